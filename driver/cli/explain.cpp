@@ -94,6 +94,9 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                                            ", traced while within the activation radius, " +
                                            document::numberText(scene.servo.activation_radius) + " m"
                                      : "is traced by its plugin in every tick";
+    if (!model.enabled)
+      printLine("  starts", "disabled: neither felt nor traced until it is enabled (hapticd ctl enable " + model.name +
+                                "); what follows is its cost then");
     printLine("  surfaces", surfaces);
     printLine("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
                           : model.kinematic && model.path.empty() ? std::string("rests until a program moves it")

@@ -34,7 +34,7 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
   for (const auto& command : app.subcommands())
     if (command.name() == argv[at]) return unknownCommand(command, argc, argv, at + 1);
   return std::string("there is no subcommand \"") + (at > 1 ? std::string(argv[at - 1]) + " " : "") + argv[at] +
-         "\", expected one of " + hapticd::document::listed(names, 30) +
+         "\", expected one of " + hapticd::document::listedFor(argv[at], names, 30) +
          hapticd::document::suggestionOfName(argv[at], names);
 }
 

@@ -93,7 +93,9 @@ std::optional<size_t> Reader::choice(const Node& node, const std::string& key, s
   const std::vector<std::string> all(choices.begin(), choices.end());
   const bool word = node.isScalar() && !toNumber(node.scalar);  // a number is not a misspelt choice
   const std::string meant = word ? suggestion(node.scalar, all) : "";
-  problem(node, key, describe(node) + " is an invalid value, expected one of " + listed(all, 40) + meant);
+  problem(node, key,
+          describe(node) + " is an invalid value, expected one of " +
+              listedFor(node.isScalar() ? node.scalar : "", all, 40) + meant);
   return std::nullopt;
 }
 
@@ -322,7 +324,8 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
         known->store(*this, entry.value, path, *known, object);
     } else {
       problem(entry.key, path,
-              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty),
+              "unknown key, expected one of " + listedFor(entry.key.scalar, table.names(), 20) +
+                  hintAbout(entry, table, empty),
               ProblemKind::kUnknownKey);
       const Key* meant = empty == nullptr ? meantKey(node, entry, table) : nullptr;
       if (meant == nullptr) judge(entry.value, path, keyWithin(table, entry.key.scalar));

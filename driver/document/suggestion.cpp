@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <utility>
 
 #include "base/nearest_word.hpp"
 #include "document/correction.hpp"
@@ -71,6 +72,25 @@ std::string listed(const std::vector<std::string>& names, size_t most) {
   for (size_t i = 0; i < std::min(most, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
   if (names.size() > most) text += ", ... (" + std::to_string(names.size()) + " in all)";
   return text;
+}
+
+std::string listedFor(std::string_view word, const std::vector<std::string>& names, size_t most) {
+  if (names.size() <= most) return listed(names, most);
+  constexpr size_t kShortest = 4;  // letters of a word that is looked for within others
+  const auto distance = [word](const std::string& name) -> size_t {
+    const bool within = word.size() >= kShortest && name.find(word) != name.npos;
+    const bool around = name.size() >= kShortest && word.find(name) != word.npos;
+    return within || around ? 0 : editDistance(word, name);
+  };
+  constexpr size_t kNearest = 4;  // the others keep their order, in which what belongs together is together
+  std::vector<std::pair<size_t, size_t>> order;  // distance, place in the list
+  for (size_t i = 0; i < names.size(); ++i) order.emplace_back(distance(names[i]), i);
+  std::sort(order.begin(), order.end());
+  const auto by_place = [](const auto& a, const auto& b) { return a.second < b.second; };
+  std::sort(order.begin() + static_cast<std::ptrdiff_t>(std::min(kNearest, order.size())), order.end(), by_place);
+  std::vector<std::string> sorted;
+  for (const auto& [away, place] : order) sorted.push_back(names[place]);
+  return listed(sorted, most);
 }
 
 }  // namespace hapticd::document

@@ -17,4 +17,8 @@ std::string suggestionOfName(std::string_view name, const std::vector<std::strin
 /// [any] Returns "a, b, c", or "a, b, ... (17 in all)" if there are more than `most` names.
 std::string listed(const std::vector<std::string>& names, size_t most = 12);
 
+/// [any] Returns the same for names of which `word` is none. If there are more than `most`, the four that are
+/// nearest to the word come first, so that the one that was meant is not left out.
+std::string listedFor(std::string_view word, const std::vector<std::string>& names, size_t most = 12);
+
 }  // namespace hapticd::document

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "traced_shape/joint_end.hpp"
+
 namespace hapticd {
 namespace {
 
@@ -79,11 +81,13 @@ void NurbsRigid::reset() noexcept HSP_RT {
 
 hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
   const hsp_step step = body_ ? body_->move(given) : given;
+  const uint32_t end = body_ ? endFlags(body_->body().stop()) : 0;
   hsp_status worst = HSP_OK;
   stored_ = 0;
   for (uint32_t i = 0; i < step.count; ++i) {
-    const hsp_status status = press(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step,
-                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i));
+    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
+    const hsp_status status = press(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, contact);
+    contact.flags |= end;
     if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
   }
   return worst;

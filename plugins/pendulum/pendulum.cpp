@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "kernels/contact/wall.hpp"
+#include "traced_shape/joint_end.hpp"
 
 namespace hapticd {
 
@@ -27,23 +28,53 @@ void checkFelt(double swing_rate, double rate_hz) {
 
 }  // namespace
 
+/// Returns the pendulum as a rigid body on a hinge, in the model frame at angle 0.
+/// A hinge depends on mass and centre only by the weight's moment, mass times length, and by the whole inertia. So the
+/// centre is put nearer to the pivot, and the mass is made larger, until half of the inertia remains about the centre:
+/// a point mass has none there, which a rigid body must have.
+/// @param down unit vector from the pivot to the centre; zero if no gravity acts in the plane of the swing
+dynamics::RigidBodyLaw Pendulum::hingeLaw(double inertia, const Eigen::Vector3d& down) const {
+  dynamics::RigidBodyLaw law;
+  law.joint = dynamics::Joint::kHinge;
+  law.pivot = Eigen::Vector3d(pivot_.data());
+  law.axis = Eigen::Vector3d(axis_.data());
+  law.angular_damping = damping_;
+  const double length = down.isZero(0) ? 0 : std::min(length_, inertia / (2 * mass_ * length_));
+  law.mass = length > 0 ? mass_ * (length_ / length) : mass_;
+  law.center = law.pivot + length * down;
+  law.inertia = Eigen::Matrix3d::Identity() * (inertia - law.mass * length * length);
+  if (limits_.size() == 2) {
+    law.limits = {limits_[0] - angle_, limits_[1] - angle_};  // a body counts from where it starts
+    if (limits_[0] < limits_[1] && !(law.limits.lowest <= 0 && law.limits.highest >= 0))
+      throw std::invalid_argument(
+          "limits: the pendulum starts at `angle`, which is not between its end stops; expected lowest <= angle <= "
+          "highest");
+  }
+  return law;
+}
+
 void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
   const Eigen::Vector3d axis(axis_.data());
   if (!(axis.norm() > 0)) throw std::invalid_argument("axis: [0, 0, 0] has no direction; give one such as [0, 0, 1]");
-  drawn_ = MovingFrame::of(activation.pose);
-  axis_world_ = drawn_.orientation * axis.normalized();
-  pivot_world_ = drawn_.position + drawn_.orientation * Eigen::Vector3d(pivot_.data());
-  const Eigen::Vector3d gravity(activation.gravity);
+  const MovingFrame drawn = MovingFrame::of(activation.pose);  // at angle 0
+  const Eigen::Vector3d axis_world = drawn.orientation * axis.normalized(), gravity(activation.gravity);
+  const Eigen::Vector3d pull = gravity - gravity.dot(axis_world) * axis_world;
   const double inertia = inertia_ > 0 ? inertia_ : mass_ * length_ * length_;
-  law_ = {mass_, inertia, length_, damping_, (gravity - gravity.dot(axis_world_) * axis_world_).norm()};
   if (!(inertia > 0))
     throw std::invalid_argument(
         "pendulum: inertia: a point mass at length 0 has no inertia; give an inertia or a length above 0");
-  dynamics::validate(law_);
-  dynamics::validateSwing(std::sqrt(law_.frequencySquared()), activation.rate_hz);
-  checkFelt(std::sqrt(law_.frequencySquared()), activation.rate_hz);
-  state_ = {angle_, rate_};
+  const Eigen::Vector3d down =
+      pull.norm() > 0 ? Eigen::Vector3d(drawn.orientation.conjugate() * pull.normalized()) : Eigen::Vector3d::Zero();
+  const dynamics::RigidBodyLaw law = hingeLaw(inertia, down);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(std::remainder(angle_, 2 * M_PI), axis_world));
+  const Eigen::Vector3d pivot_world = drawn.position + drawn.orientation * law.pivot;
+  body_.emplace(law, pivot_world + turn * (drawn.position - pivot_world), turn * drawn.orientation, gravity);
+  dynamics::validateSwing(body_->swingRate(), activation.rate_hz);
+  checkFelt(body_->swingRate(), activation.rate_hz);
+  body_->setVelocity(Eigen::Vector3d::Zero(), rate_ * axis.normalized());
+  const double half = std::sin(angle_ / 2);
+  lifted_ = 2 * mass_ * pull.norm() * length_ * half * half;
   stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.emplace(std::max(activation.max_probes, 1u));
@@ -59,75 +90,20 @@ void Pendulum::reset() noexcept HSP_RT {
   stored_ = 0;
 }
 
-/// Computes the pose from the angle and the pose in the scene, not step by step. So after any number of ticks it has
-/// only the error of the angle.
-MovingFrame Pendulum::frame() const noexcept HSP_RT {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(std::remainder(state_.angle, 2 * M_PI), axis_world_));
-  MovingFrame now;
-  now.orientation = (turn * drawn_.orientation).normalized();
-  now.position = pivot_world_ + turn * (drawn_.position - pivot_world_);
-  now.angular = state_.rate * axis_world_;
-  now.linear = now.angular.cross(now.position - pivot_world_);
-  return now;
-}
-
-/// Makes a step under the forces of the hand by backward Euler: it uses the torques at the end of the step, so it is
-/// stable even for a very light pendulum. A contact that lets go acts only if the pendulum comes after the probe.
-/// @return false if no contact acts; then nothing was done
-bool Pendulum::push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT {
-  const double weight = law_.mass * law_.gravity * law_.length, here = state_.angle + dt * state_.rate;
-  const double own = law_.inertia + dt * (law_.damping + dt * weight * std::max(0.0, std::cos(state_.angle)));
-  const double own_impulse = -dt * (weight * std::sin(here) + law_.damping * state_.rate);
-  // velocity of the point per angular velocity
-  const auto moment_of = [this](const dynamics::PredictedContact& press) -> Eigen::Vector3d {
-    return axis_world_.cross(press.point - pivot_world_);
-  };
-  const auto change_under = [&](const auto& acts) {
-    double resisting = own, impulse = own_impulse;
-    for (const dynamics::PredictedContact& press : presses) {
-      if (!acts(press)) continue;
-      const Eigen::Vector3d moment = moment_of(press);
-      resisting += dt * moment.dot(press.give * moment);
-      impulse += dt * moment.dot(press.force);
-    }
-    return impulse / resisting;
-  };
-  const double first = change_under([](const dynamics::PredictedContact& press) { return !press.lets_go; });
-  const auto acts = [&](const dynamics::PredictedContact& press) {
-    return !press.lets_go || !dynamics::forceAfter(press, first * moment_of(press)).isZero(0);
-  };
-  if (std::none_of(presses.begin(), presses.end(), acts)) return false;
-  const double change = change_under(acts);
-  double impulse = own_impulse;
-  for (const dynamics::PredictedContact& press : presses) {
-    if (!acts(press)) continue;
-    const Eigen::Vector3d moment = moment_of(press);
-    impulse += dt * moment.dot(dynamics::forceAfter(press, change * moment));
-  }
-  state_.rate += impulse / own;
-  state_.angle += dt * state_.rate;
-  return true;
-}
-
 hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
   const MovingFrame before = MovingFrame::of(*step.pose);
-  const auto velocity_at = [this](const Eigen::Vector3d& point) -> Eigen::Vector3d {
-    return state_.rate * axis_world_.cross(point - pivot_world_);
-  };
-  if (step.dt_s > 0) {
-    const auto presses = presses_->predict(step, before, velocity_at);
-    if (presses.empty() || !push(presses, step.dt_s)) state_ = dynamics::advance(law_, state_, 0, step.dt_s);
-    // keeps the precision of the angle if the pendulum goes round many times
-    state_.angle = std::remainder(state_.angle, 2 * M_PI);
-  }
-  const MovingFrame now = frame();
+  const auto velocity_at = [this](const Eigen::Vector3d& point) { return body_->velocityAt(point); };
+  if (step.dt_s > 0) body_->step(presses_->predict(step, before, velocity_at), step.dt_s);
+  const MovingFrame now = {body_->position(), body_->orientation(), body_->linear(), body_->angular()};
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);
+  const uint32_t end = endFlags(body_->stop());
   hsp_status worst = HSP_OK;
   stored_ = 0;
   for (uint32_t i = 0; i < moved.count; ++i) {
-    const hsp_status status = press(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved,
-                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i), now);
+    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
+    const hsp_status status = press(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact, now);
+    contact.flags |= end;
     if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
   }
   return worst;
@@ -157,7 +133,7 @@ const void* Pendulum::extension(const char* name) {
   if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<Pendulum>(name);
   energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                          const Pendulum& self = *reinterpret_cast<Pendulum*>(shape);
-                         return dynamics::energy(self.law_, self.state_) + self.stored_;
+                         return self.body_->energy() + self.lifted_ + self.stored_;
                        }};
   return &energy_extension_;
 }

@@ -3,8 +3,9 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <vector>
 
-#include "kernels/dynamics/pendulum.hpp"
+#include "kernels/dynamics/rigid_body.hpp"
 #include "traced_shape/contact_predictor.hpp"
 #include "traced_shape/traced_shape.hpp"
 
@@ -15,7 +16,7 @@ class Pendulum final : public TracedShape {
   static constexpr ShapeInfo kInfo = {
       "org.hapticd.shape.pendulum",
       "pendulum",
-      "1.1",
+      "1.2",
       "MIT",
       "A model that swings about a fixed axis under gravity and the forces of the hand.",
       HSP_C_MOVES};
@@ -44,7 +45,9 @@ class Pendulum final : public TracedShape {
                     "along gravity"),
             F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "damping of the swing"),
             F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "angle at the start; 0: hanging straight down"),
-            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "angular velocity at the start")},
+            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "angular velocity at the start"),
+            F::array("limits", &Pendulum::limits_, "rad", 2, 0, 2, -1e3, 1e3, "[]",
+                     "[lowest, highest]: end stops of the swing, angles as `angle`; []: no stops")},
         formerFields<Pendulum>());
   }
 
@@ -54,19 +57,17 @@ class Pendulum final : public TracedShape {
   const void* extension(const char* name);
 
  private:
-  MovingFrame frame() const noexcept HSP_RT;
-  bool push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT;
+  dynamics::RigidBodyLaw hingeLaw(double inertia, const Eigen::Vector3d& down) const;
   hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
                    const MovingFrame& now) noexcept HSP_RT;
 
   double stiffness_ = 800, contact_damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   std::array<double, 3> pivot_{}, axis_{};
   double mass_ = 1, inertia_ = 0, length_ = 0.25, damping_ = 0, angle_ = 0, rate_ = 0;
+  std::vector<double> limits_;
 
-  dynamics::PendulumLaw law_;
-  dynamics::PendulumState state_;
-  Eigen::Vector3d pivot_world_{0, 0, 0}, axis_world_{0, 0, 1};
-  MovingFrame drawn_;  ///< frame of the model at angle 0: its pose in the scene
+  std::optional<dynamics::RigidBody> body_;
+  double lifted_ = 0;  ///< [J] potential energy at the start above that at angle 0, from which body_ does not count
   double stored_ = 0;  ///< [J] energy stored in the surface
   std::optional<MovedProbes> probes_;
   std::optional<ContactPredictor> presses_;

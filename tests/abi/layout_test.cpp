@@ -110,9 +110,9 @@ TEST(Layout, KeepsTheValuesOfItsConstants) {
   for (int i = 0; i < 8; ++i) EXPECT_EQ(kinds[i], i + 1);
   const unsigned bits[] = {HSP_P_LIVE, HSP_P_REQUIRED, HSP_P_SAFETY, HSP_P_ACCURACY};
   for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(bits[i], 1u << i);
-  const unsigned outs[] = {HSP_OUT_CONTACT, HSP_OUT_EDGE,    HSP_OUT_EVENT,   HSP_OUT_TRACED,
-                           HSP_OUT_HELD,    HSP_OUT_WENT_IN, HSP_OUT_CAME_OUT};
-  for (unsigned i = 0; i < 7; ++i) EXPECT_EQ(outs[i], 1u << i);
+  const unsigned outs[] = {HSP_OUT_CONTACT, HSP_OUT_EDGE,     HSP_OUT_EVENT,     HSP_OUT_TRACED,    HSP_OUT_HELD,
+                           HSP_OUT_WENT_IN, HSP_OUT_CAME_OUT, HSP_OUT_AT_LOWEST, HSP_OUT_AT_HIGHEST};
+  for (unsigned i = 0; i < std::size(outs); ++i) EXPECT_EQ(outs[i], 1u << i);
   const unsigned flags[] = {HSP_IN_JUMP,       HSP_IN_INVALID, HSP_R_VELOCITY, HSP_R_MOVES,
                             HSP_R_ORIENTATION, HSP_C_MOVES,    HSP_C_DEFORMS};
   const unsigned expected_flags[] = {1, 2, 1, 2, 4, 1, 2};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/mark_text.hpp"
 #include "cli/ctl/answer.hpp"
 #include "cli/ctl/geometry.hpp"
 #include "cli/ctl/lead.hpp"
@@ -161,6 +162,7 @@ std::string exampleOf(const std::string& word) {
       {"feature", "feature engine 12"},
       {"geometry", "geometry teapot --obj teapot.obj"},
       {"events", "events --follow"},
+      {"mark", "mark 'trial 7 begins'"},
       {"dump", "dump"},
       {"stop", "--name left stop    # of a daemon started with: hapticd run --name left"},
   };
@@ -251,7 +253,7 @@ int showEvents(const CtlArguments& options) {
 
 void addEvents(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const Command events = ctl.addSubcommand(
-      "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
+      "events", "Show what happened: clicks, touches, faults, marks, models and programs that came and left.");
   events.addFlag("--follow", options->follow, "do not end; print each new event as one line of JSON");
   events.footer(exampleOf("events"));
   events.callback([options, &exit_code] { awaitDaemon(*options), exit_code = showEvents(*options); });
@@ -267,6 +269,14 @@ void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, i
     if (what->complete()) awaitDaemon(*options);
     exit_code = leadByLines(*what);
   });
+}
+
+void addMark(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  addRequest(ctl, "mark", "Write a text into the recording, the black box and the events, at this moment.", options,
+             exit_code, [options](Json& json) { json["text"] = options->value; })
+      .addOption("text", options->value, kMarkExpected)
+      .required()
+      .check([](const std::string& text) { return isMarkText(text) ? "" : std::string("expected ") + kMarkExpected; });
 }
 
 std::string absolute(const std::string& file) {
@@ -371,6 +381,7 @@ void addCtl(const Command& app, int& exit_code) {
   addFeatureRequest(ctl, options, exit_code);
   addLead(ctl, options, exit_code);
   addEvents(ctl, options, exit_code);
+  addMark(ctl, options, exit_code);
   addRequest(ctl, "dump", "Write the black box to disk: every tick of the last 10 s.", options, exit_code, nothing);
   addRequest(ctl, "stop", "End the run; forces ramp to zero first.", options, exit_code, nothing);
   ctl.footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");

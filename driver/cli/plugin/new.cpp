@@ -16,7 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct NewPluginArguments {
-  std::string name, folder;
+  std::string name, folder, language = "c++";
+  bool moving = false;
+
+  /// The folder of the template below that of the usual one; "" for the usual one.
+  std::string kind() const { return moving ? "moving" : language == "c" ? "c" : ""; }
 };
 
 /// Returns true for a name that can be a file, a C++ identifier and a CMake target.
@@ -56,19 +60,21 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
 }
 
 std::string renamed(std::string text, const std::string& name) {
-  replaceAll(text, "TemplateBall", camelCase(name));
+  for (const char* shape : {"TemplateBall", "TemplatePlate"}) replaceAll(text, shape, camelCase(name));
   replaceAll(text, "org.hapticd.shape.template", "org.example.shape." + name);
-  replaceAll(text, "`hapticd plugin new NAME` copies it under another name.", "Made with `hapticd plugin new`.");
-  replaceAll(text, "`hapticd plugin new NAME` copies this folder under another name.",
-             "Made with `hapticd plugin new`.");
+  for (const std::string kind : {"", " --language c", " --moving"})
+    for (const std::string what : {"it", "this folder"})
+      replaceAll(text, "`hapticd plugin new NAME" + kind + "` copies " + what + " under another name.",
+                 "Made with `hapticd plugin new" + kind + "`.");
   replaceAll(text, "template", name);  // the template file uses no C++ template
   return text;
 }
 
-std::optional<fs::path> templateFolder() {
-  if (const auto installed = host::shippedFile("template")) return installed;
+/// @param kind folder below that of the usual template, or ""
+std::optional<fs::path> templateFolder(const std::string& kind) {
+  if (const auto installed = host::shippedFile(kind.empty() ? "template" : "template/" + kind)) return installed;
   std::error_code error;
-  const fs::path source = fs::path(host::buildFolders().source) / "plugins/template";
+  const fs::path source = fs::path(host::buildFolders().source) / "plugins/template" / kind;
   return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
 }
 
@@ -82,10 +88,10 @@ fs::path includeFolder() {
 }
 
 /// Prints what to do next. The compiler's command comes first, because it works with and without an installed hapticd.
-void printNextSteps(const std::string& folder, const std::string& name) {
+void printNextSteps(const std::string& folder, const std::string& name, bool c) {
   const char *at = folder.c_str(), *what = name.c_str();
-  std::printf("\nbuild it:  g++ -std=c++20 -O2 -shared -fPIC -I %s %s/%s.cpp -o %s/%s.so\n", includeFolder().c_str(),
-              at, what, at, what);
+  std::printf("\nbuild it:  %s -O2 -shared -fPIC -I %s %s/%s.%s -o %s/%s.so%s\n", c ? "gcc -std=c11" : "g++ -std=c++20",
+              includeFolder().c_str(), at, what, c ? "c" : "cpp", at, what, c ? " -lm" : "");
   std::printf("test it:   hapticd plugin check %s/%s.so\n", at, what);
   std::printf("touch it:  hapticd --plugin-path %s run %s/scene.yaml\n", at, at);
   std::printf("or with CMake, where hapticd is installed:  cmake -S %s -B %s/build && cmake --build %s/build\n", at, at,
@@ -119,7 +125,7 @@ int makeNew(const NewPluginArguments& options) {
   std::error_code error;
   if (fs::exists(target, error))
     return fail(kBadInput, target.string() + " exists already, expected the name of a new folder");
-  const auto source = templateFolder();
+  const auto source = templateFolder(options.kind());
   if (!source)
     return fail(kFailed, "the template is not installed; expected it in share/hapticd/template beside this program");
   if (!fs::create_directories(target, error))
@@ -129,7 +135,7 @@ int makeNew(const NewPluginArguments& options) {
     fs::remove_all(target, error);  // a folder that is not complete would block the next try
     return fail(kFailed, copied.error() + "; the new folder was removed");
   }
-  printNextSteps(target.string(), options.name);
+  printNextSteps(target.string(), options.name, options.language == "c");
   if (const auto same = catalog().shape(options.name))
     std::fprintf(
         stderr,
@@ -144,10 +150,17 @@ int makeNew(const NewPluginArguments& options) {
 
 void addPluginNew(const Command& app, int& exit_code) {
   auto options = std::make_shared<NewPluginArguments>();
-  const Command command = app.subcommand("plugin").addSubcommand(
-      "new", "Create a new plugin from the template: source, build file, scene.");
+  const Command command =
+      app.subcommand("plugin").addSubcommand("new", "Create a new plugin from a template: source, build file, scene.");
   command.addOption("name", options->name, "name of the plugin: lower-case letters, digits and _").required();
   command.addOption("--dir", options->folder, "folder to create; default: NAME in the current folder");
+  const auto language = command.addOption("--language", options->language, "c++, or c: plain C against hapticd/shape.h")
+                            .oneOf({"c++", "c"})
+                            .showDefault();
+  command
+      .addFlag("--moving", options->moving,
+               "a shape that moves by itself under the forces of the hand: a plate on a spring")
+      .excludes(language);
   command.footer("Example:\n  hapticd plugin new my_shape");
   command.callback([options, &exit_code] { exit_code = makeNew(*options); });
 }

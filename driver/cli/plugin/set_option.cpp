@@ -64,8 +64,8 @@ SetOption::SetOption(const std::vector<std::string>& pairs, const std::vector<ho
     if (equals == std::string::npos)
       problems_.push_back("--set " + pair + ": has no value, expected ID=VALUE");
     else if (std::find(names.begin(), names.end(), id) == names.end())
-      problems_.push_back("--set " + pair + ": unknown parameter, expected one of " + document::listed(names, 24) +
-                          document::suggestion(id, names));
+      problems_.push_back("--set " + pair + ": unknown parameter, expected one of " +
+                          document::listedFor(id, names, 24) + document::suggestion(id, names));
     else if (!given_.emplace(id, pair.substr(equals + 1)).second)
       problems_.push_back("--set " + pair + ": " + id + " is given twice, expected once");
   }

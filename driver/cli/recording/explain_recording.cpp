@@ -7,6 +7,7 @@
 #include <map>
 
 #include "cli/recording/joint_ranges.hpp"
+#include "cli/recording/recorded_marks.hpp"
 #include "cli/recording/recorded_orders.hpp"
 #include "cli/recording/touched_features.hpp"
 #include "cli/support/command.hpp"
@@ -84,6 +85,7 @@ int explainRecording(const std::string& file) {
   if (!run) return fail(kBadInput, file + ": " + run.error());
   printRun(file, **recording, *run);
   printEvents(servo::messagesOf(**recording, *run));
+  printLines("marks", recordedMarks(**recording), "marks");
   printLines("orders", recordedOrders(**recording, run->scene), "orders");
   printLines("touched", touchedFeatures(**recording, run->scene, run->facts.rate), "contacts");
   printLines("moved", jointRanges(**recording, run->scene, run->facts.rate), "poses");

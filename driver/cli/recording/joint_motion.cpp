@@ -16,10 +16,14 @@ constexpr double kHinge = 1;  // index of `hinge` among the words of `joint`
 
 std::optional<JointMotion> JointMotion::of(const scene::Model& model) {
   const scene::Value *joint = givenIn(model.parameters, "joint"), *limits = givenIn(model.parameters, "limits");
-  if (joint == nullptr || joint->number == 0) return {};
-  const scene::Value* axis = givenIn(model.parameters, "axis");
+  const bool swings = model.plugin == "pendulum";  // it has no `joint`, and its pose in the scene is that of angle 0
+  if (!swings && (joint == nullptr || joint->number == 0)) return {};
+  const scene::Value *axis = givenIn(model.parameters, "axis"),
+                     *angle = swings ? givenIn(model.parameters, "angle") : nullptr;
   const bool given = axis != nullptr && axis->numbers.size() == 3;
-  JointMotion motion(model.pose, given ? Vector3d(axis->numbers.data()) : Vector3d::UnitY(), joint->number == kHinge);
+  const Vector3d usual = swings ? Vector3d::UnitZ() : Vector3d::UnitY();
+  JointMotion motion(model.pose, given ? Vector3d(axis->numbers.data()) : usual, swings || joint->number == kHinge);
+  if (angle != nullptr) motion.last_ = angle->number;  // from here the turns are counted
   if (limits != nullptr && limits->numbers.size() == 2) motion.limits_ = {limits->numbers[0], limits->numbers[1]};
   return motion;
 }

@@ -89,7 +89,7 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
       std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
   if (model == scene.models.end())
     return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
-                 document::listed(modelNames(scene)) + document::suggestionOfName(name, modelNames(scene))};
+                 document::listedFor(name, modelNames(scene)) + document::suggestionOfName(name, modelNames(scene))};
   auto found = catalog().shape(model->plugin);
   const int index = found ? (*found)->indexOf(id) : -1;
   if (index < 0)

@@ -45,7 +45,7 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
       std::vector<std::string> names;
       for (const scene::Model& model : scene.models) names.push_back(model.name);
       return Error{"--models: the scene has no model \"" + name + "\"; expected one of " +
-                   document::listed(names, kMostListed) + document::suggestionOfName(name, names)};
+                   document::listedFor(name, names, kMostListed) + document::suggestionOfName(name, names)};
     }
     chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
   }
@@ -134,7 +134,7 @@ int trace(const TraceArguments& options) {
   const TickWatch watched;
   const SetupErrors once;
   const servo::SetupWatch waiting(logToTerminal);
-  auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
+  auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .keep_disabled = true}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);
   if (!writer) return fail(kBadInput, writer.error());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/descriptors.hpp"
+#include "base/mark_text.hpp"
 #include "base/nearest_word.hpp"
 
 namespace hapticd::control {
@@ -33,8 +34,8 @@ struct RequestForm {
   std::set<std::string> needs, may;
 };
 
-const std::array<RequestForm, 24>& forms() {
-  static const std::array<RequestForm, 24> all = {
+const std::array<RequestForm, 25>& forms() {
+  static const std::array<RequestForm, 25> all = {
       {{"status", Kind::kStatus, {}, {}},
        {"list", Kind::kList, {}, {}},
        {"snapshot", Kind::kSnapshot, {}, {}},
@@ -50,6 +51,7 @@ const std::array<RequestForm, 24>& forms() {
        {"reload", Kind::kReload, {}, {"file", "files"}},
        {"hold", Kind::kHold, {}, {"device"}},
        {"clear", Kind::kClear, {}, {"device"}},
+       {"mark", Kind::kMark, {"text"}, {}},
        {"dump", Kind::kDump, {}, {}},
        {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "triangles", "as"}},
        {"vertices", Kind::kVertices, {"model"}, {"after"}},
@@ -102,6 +104,7 @@ std::string expected(const char* key) {
       {"parameter", "the name of a parameter"},
       {"file", "the absolute path of a scene"},
       {"files", "a list of at most 250 absolute paths, every path once"},
+      {"text", kMarkExpected},
       {"value", "a number without quotes, or a word in quotes such as \"true\""},
       {"tolerance", "a number from 0.00001 to 1 m"},
       {"triangles", "a whole number from 1000 to 16777216"},
@@ -151,6 +154,12 @@ class FieldReader {
       return complain(key, expected(key) + ", 1 to " + std::to_string(kMaxText) + " bytes of text");
     to = value->get<std::string>();
     if (to.find('\0') != std::string::npos) complain(key, expected(key) + ", without zero bytes");
+  }
+  void markText(const char* key, std::string& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (value->is_string()) to = value->get<std::string>();
+    if (!isMarkText(to)) complain(key, expected(key));
   }
   void number(const char* key, double low, double high, double& to) {
     const Json* value = find(key);
@@ -303,6 +312,7 @@ void readValues(FieldReader& take, Request& request) {
   take.text("parameter", request.parameter);
   take.text("file", request.file);
   take.paths("files", kMostDescriptors, request.files);
+  take.markText("text", request.text);
   take.numberOrWord("value", -1e300, 1e300, request.value, request.word);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);

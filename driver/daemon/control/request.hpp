@@ -30,6 +30,7 @@ struct Request {
     kReload,
     kHold,
     kClear,
+    kMark,
     kDump,
     kGeometry,
     kVertices,
@@ -58,6 +59,7 @@ struct Request {
   bool turns = false;                             ///< kMove: an orientation was given
   std::optional<double> seconds;                  ///< [s] kMove: duration of the motion
   std::string word;                               ///< kSet: the new value, if it is a choice or a switch
+  std::string text;                               ///< kMark: what to write into the recording
 };
 
 /// [main] Parses and checks a line. An error says what is wrong and what was expected. @param id receives the request's

@@ -58,6 +58,7 @@ struct Model {
   std::filesystem::path library;  ///< the .so that contains the plugin
   Pose pose;                      ///< pose of the model in the world at the start
   bool kinematic = false;         ///< true: a path, a request or a leader moves the model, not its plugin
+  bool enabled = true;            ///< false: it is neither felt nor traced until a request enables it
   std::vector<PathPoint> path;
   std::vector<Value> parameters;
   Place place;

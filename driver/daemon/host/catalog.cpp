@@ -185,7 +185,7 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
   const std::vector<std::string> known = names(kind);
   std::string text =
       std::string("there is no usable ") + noun(kind) + " \"" + name + "\"" + document::suggestionOfName(name, known);
-  if (!known.empty()) text += ", expected one of " + document::listed(known);
+  if (!known.empty()) text += ", expected one of " + document::listedFor(name, known);
   text += reason;
   if (reason.empty())
     for (const CatalogFile* file : files(kind))

@@ -51,7 +51,13 @@ std::string objectHeader(const std::string& messages) {
   return withChecksum(Bytes().text("OHDR").u8(2).u8(2).u32(messages.size()).text(messages).take());
 }
 
-std::string numberType(ColumnType type) {
+std::string textType(uint64_t length) {
+  constexpr uint32_t kNullPaddedUtf8 = 0x11;
+  return Bytes().u8(0x13).u8(kNullPaddedUtf8).u8(0).u8(0).u32(length).take();
+}
+
+std::string valueType(ColumnType type) {
+  if (type == ColumnType::kText) return textType(kTextBytes);
   const uint32_t bytes = bytesOf(type), bits = 8 * bytes;
   if (type == ColumnType::kReal || type == ColumnType::kReal32) {
     // class 1, version 1: little-endian IEEE numbers with an implied first bit of the mantissa and the sign in the top
@@ -76,11 +82,6 @@ std::string numberType(ColumnType type) {
   return Bytes().u8(0x10).u8(is_signed).u8(0).u8(0).u32(bytes).u16(0).u16(bits).take();
 }
 
-std::string textType(uint64_t length) {
-  constexpr uint32_t kNullPaddedUtf8 = 0x11;
-  return Bytes().u8(0x13).u8(kNullPaddedUtf8).u8(0).u8(0).u32(length).take();
-}
-
 /// Returns a compound type of version 3. Offsets of members have as many bytes as the row's size needs.
 std::string compoundType(const RowLayout& layout) {
   const uint32_t size = layout.rowBytes();
@@ -90,7 +91,7 @@ std::string compoundType(const RowLayout& layout) {
   for (const Column& column : layout.columns()) {
     type.text(column.name).u8(0);
     for (int i = 0; i < offset_bytes; ++i) type.u8(column.offset >> (8 * i));
-    type.text(numberType(column.type));
+    type.text(valueType(column.type));
   }
   return type.take();
 }

@@ -85,13 +85,12 @@ Skeleton makeSkeleton(const std::vector<StreamSpec>& streams, const std::vector<
 }
 
 std::string columnsJson(const std::vector<StreamSpec>& streams) {
-  constexpr const char* kTypes[] = {"f8", "f4", "u8", "u4", "i4"};
   auto json = nlohmann::ordered_json::object();
   for (const StreamSpec& stream : streams) {
     auto& list = json[stream.name] = nlohmann::ordered_json::array();
     for (const Column& column : stream.layout.columns())
       list.push_back({{"name", column.name},
-                      {"type", kTypes[static_cast<size_t>(column.type)]},
+                      {"type", kTypeNames[static_cast<size_t>(column.type)]},
                       {"offset", column.offset},
                       {"unit", column.unit},
                       {"doc", column.doc}});

@@ -16,7 +16,7 @@ namespace hapticd::record {
 
 constexpr const char* kRecordingFormat = "hapticd-recording/1";
 constexpr uint64_t kHeaderAt = 512;  ///< [bytes] address of FileHeader in the file
-constexpr uint32_t kMaxStreams = 10;
+constexpr uint32_t kMaxStreams = 11;
 constexpr uint32_t kMaxRowBytes = 1 << 16;
 
 struct StreamHeader {

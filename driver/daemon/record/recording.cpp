@@ -34,13 +34,6 @@ std::optional<T> at(std::span<const std::byte> bytes, uint64_t address) {
   return value;
 }
 
-std::optional<ColumnType> typeOf(const std::string& name) {
-  constexpr std::array<const char*, 5> kTypes = {"f8", "f4", "u8", "u4", "i4"};
-  for (size_t i = 0; i < kTypes.size(); ++i)
-    if (name == kTypes[i]) return static_cast<ColumnType>(i);
-  return std::nullopt;
-}
-
 template <class T>
 double as(const std::byte* from) {
   T value;
@@ -74,8 +67,16 @@ double RecordedStream::number(uint64_t index, const Column& column) const {
       return as<uint32_t>(from);
     case ColumnType::kInt:
       return as<int32_t>(from);
+    case ColumnType::kText:
+      break;
   }
-  return 0;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string RecordedStream::text(uint64_t index, const Column& column) const {
+  if (column.type != ColumnType::kText) return "";
+  const auto* from = reinterpret_cast<const char*>(row(index) + column.offset);
+  return {from, strnlen(from, kTextBytes)};
 }
 
 Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {

@@ -28,8 +28,10 @@ class RecordedStream {
   }
   const Column* find(const std::string& name) const;
 
-  /// [any] Returns a number of a row as a double; counts above 2^53 are rounded.
+  /// [any] Returns a number of a row as a double; counts above 2^53 are rounded. A text is NaN.
   double number(uint64_t index, const Column& column) const;
+  /// [any] Returns a text of a row; "" for a number. A damaged file may hold bytes that are no text.
+  std::string text(uint64_t index, const Column& column) const;
 
  private:
   friend class Recording;

@@ -79,6 +79,7 @@ Json modelJson(const scene::Model& model) {
           {"library", model.library.string()},
           {"pose", pose(model.pose)},
           {"kinematic", model.kinematic},
+          {"enabled", model.enabled},
           {"path", std::move(path)},
           {"parameters", values(model.parameters)}};
 }
@@ -90,6 +91,7 @@ scene::Model toModel(const Json& json) {
   model.library = json.at("library").get<std::string>();
   model.pose = toPose(json.at("pose"));
   model.kinematic = json.at("kinematic");
+  model.enabled = json.value("enabled", true);  // older recordings have no models that start disabled
   for (const Json& point : json.at("path")) model.path.push_back({toReal(point.at("t")), toPose(point.at("pose"))});
   model.parameters = toValues(json.at("parameters"));
   return model;

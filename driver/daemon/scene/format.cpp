@@ -67,6 +67,10 @@ constexpr Key kModelKeys[] = {
     any<&ModelText::path>("path", "the path of a file",
                           "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated. "
                           "Without a path, the model rests at its pose until a program leads it."),
+    boolean<&ModelText::enabled>(
+        "enabled", "true",
+        "false: the model is neither felt nor traced, and costs no time in a tick, until it is "
+        "enabled: hapticd ctl enable NAME."),
 };
 
 constexpr Key kAdmittanceKeys[] = {

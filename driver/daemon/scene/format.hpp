@@ -22,6 +22,7 @@ struct ModelText {
   const Node* node = nullptr;
   std::string name, plugin;
   Pose pose;
+  bool enabled = true;
   const Node *parameters = nullptr, *motion = nullptr, *path = nullptr;
 };
 

@@ -55,6 +55,7 @@ class SceneLoader {
     model.name = text.name;
     model.plugin = text.plugin;
     model.pose = text.pose;
+    model.enabled = text.enabled;
     model.place = in_.place(*text.node);
     // This mistake was reported before. The empty model keeps the indices of the other models right.
     if (!text.node->isMap()) return scene_.models.push_back(std::move(model));

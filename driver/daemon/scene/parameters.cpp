@@ -166,7 +166,7 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
   in_->problem(
       entry.key, key,
-      "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, kMostListed) +
+      "unknown parameter of " + info_.name + ", expected one of " + document::listedFor(id, names, kMostListed) +
           (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)") +
           (names.size() > kMostListed && info_.kind == host::Kind::kShape ? "; see hapticd plugin info " + info_.name
                                                                           : ""),

@@ -46,6 +46,11 @@ void Proximity::remove(uint32_t place) {
   of_scene_[place] = UINT32_MAX;
 }
 
+bool Proximity::contains(uint32_t place) const {
+  const std::lock_guard lock(mutex_);
+  return place < of_scene_.size() && of_scene_[place] != UINT32_MAX;
+}
+
 size_t Proximity::modelCount() const {
   const std::lock_guard lock(mutex_);
   return static_cast<size_t>(

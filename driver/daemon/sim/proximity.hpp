@@ -41,6 +41,9 @@ class Proximity {
   /// [main] Removes the model of a place. After the return, no records are sent for it.
   void remove(uint32_t place);
 
+  /// [main] True if the model of a place is searched.
+  bool contains(uint32_t place) const;
+
   /// [sim] Searches once with the newest positions of the probes, and starts, updates or stops the tracing of surfaces.
   /// The servo sees all records of a search at once.
   void search();

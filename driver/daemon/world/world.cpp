@@ -86,6 +86,9 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   settings.evaluation_ns = options.evaluation_ns;
   settings.spare_models = options.spare_models;
   settings.former_claims = options.former_claims;
+  settings.keep_disabled = options.keep_disabled;
+  for (uint32_t i = 0; i < models.size() && options.keep_disabled; ++i)
+    if (!scene.models[i].enabled) world->proximity_->remove(i);  // until wake()
   world->core_ = std::make_unique<Core>(models, scene, options.probe_count, settings, *world->link_);
   world->shapes_.resize(models.size() + options.spare_models);
   return world;
@@ -108,7 +111,13 @@ Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& 
 
 void World::store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
   shapes_[place] = std::move(shape);
-  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
+  if (model.enabled) proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
+}
+
+bool World::wake(uint32_t place, const scene::Model& model) {
+  if (shapes_[place]->surfaces() == nullptr || proximity_->contains(place)) return false;
+  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);  // a moving model sends its pose
+  return true;
 }
 
 }  // namespace hapticd::servo

@@ -25,6 +25,9 @@ struct WorldOptions {
   double evaluation_ns = 0;
   double max_force = 0;        ///< [N] largest force that any arm lets through to the hand; 0: unknown
   bool former_claims = false;  ///< for old recordings, see CoreSettings
+  /// true: models that the scene disables are not traced until they are enabled, as in a run; false: they are as if
+  /// enabled, for tools that judge all models
+  bool keep_disabled = false;
 };
 
 class World {
@@ -36,12 +39,17 @@ class World {
   /// [main] Creates and activates one more model during a run. It is felt only after the servo has adopted it.
   Result<std::unique_ptr<host::ShapeInstance>> prepare(const scene::Model& model, const host::Services::Log& log) const;
 
-  /// [main] Puts a shape into an empty place, which owns it from now on, and adds it to the proximity search.
+  /// [main] Puts a shape into an empty place, which owns it from now on, and adds it to the proximity search, unless it
+  /// starts disabled.
   void store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
   /// [main] Removes the model of a place from the proximity search. Call it before the order kRelease is given to the
   /// servo.
   void forget(uint32_t place) { proximity_->remove(place); }
+
+  /// [main] Adds a model that started disabled to the proximity search. Call it before the order kEnable is given to
+  /// the servo. Returns false if the search has it already.
+  bool wake(uint32_t place, const scene::Model& model);
 
   /// [main] Destroys the shape of a place that the servo has released.
   void destroy(uint32_t place) { shapes_[place].reset(); }

@@ -27,16 +27,11 @@ uint64_t wallNow() {
 }
 
 std::vector<record::Column> columnsOf(const Json& about, const std::string& stream) {
-  static const std::map<std::string, record::ColumnType> kTypes = {{"f8", record::ColumnType::kReal},
-                                                                   {"f4", record::ColumnType::kReal32},
-                                                                   {"u8", record::ColumnType::kCount},
-                                                                   {"u4", record::ColumnType::kWord},
-                                                                   {"i4", record::ColumnType::kInt}};
   std::vector<record::Column> columns;
   const Json list = about.value("columns", Json::object()).value(stream, Json::array());
   for (const Json& column : list)
-    if (const auto type = kTypes.find(column.value("type", "")); type != kTypes.end())
-      columns.push_back({column.value("name", ""), column.value("unit", ""), column.value("doc", ""), type->second,
+    if (const auto type = record::typeOf(column.value("type", "")))
+      columns.push_back({column.value("name", ""), column.value("unit", ""), column.value("doc", ""), *type,
                          column.value("offset", 0u)});
   return columns;
 }
@@ -55,6 +50,7 @@ class FoxgloveSession final : public PeerSession {
   struct Channel {
     size_t stream = SIZE_MAX;  ///< number of the stream; SIZE_MAX for /tf and /scene
     Json advert;
+    std::vector<record::Column> columns = {};  ///< of the stream
   };
 
   void begin();
@@ -126,8 +122,9 @@ void FoxgloveSession::advertise() {
   for (size_t i = 0; i < rows.streams().size(); ++i) {
     const std::string& name = rows.streams()[i].name;
     const auto columns = columnsOf(stage_.about(), name);
-    if (record::liesAsCdr(columns))
-      add(i, "/hapticd/" + name, "cdr", record::rosType(name), "ros2msg", record::rosDefinition(columns));
+    if (!record::liesAsCdr(columns)) continue;
+    add(i, "/hapticd/" + name, "cdr", record::rosType(name), "ros2msg", record::rosDefinition(columns));
+    channels_.back().columns = columns;
   }
   add(SIZE_MAX, "/tf", "cdr", "tf2_msgs/msg/TFMessage", "ros2msg", kTfDefinition);
   add(SIZE_MAX, "/scene", "json", "foxglove.SceneUpdate", "jsonschema", kSceneDefinition);
@@ -161,6 +158,7 @@ void FoxgloveSession::sendStream(size_t stream) {
   const uint64_t got = rows.copy(stream, next_[stream], count, bytes.data());
   next_[stream] += std::max<uint64_t>(got, 1);
   frames_->take(what.name, bytes.data(), got, what.row_bytes);
+  std::string encoded;
   for (uint64_t i = 0; i < got; ++i) {
     const auto* row = reinterpret_cast<const char*>(bytes.data() + i * what.row_bytes);
     if (what.name == "ticks" && t_offset_ + sizeof(double) <= what.row_bytes) {
@@ -171,7 +169,8 @@ void FoxgloveSession::sendStream(size_t stream) {
       newest_ = start_ + since;
     }
     if (subscription != 0)
-      send(subscription - 1, newest_, {record::kCdrHead.data(), record::kCdrHead.size()}, {row, what.row_bytes});
+      send(subscription - 1, newest_, {record::kCdrHead.data(), record::kCdrHead.size()},
+           record::cdrBody(channel->columns, {row, what.row_bytes}, encoded));
   }
 }
 

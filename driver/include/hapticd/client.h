@@ -111,10 +111,14 @@ enum {
                       code: as HAPTICD_JOINED, plus for a target 16 times the reason (1 a number is not finite, 2 the
                       time is wrong, 3 the position is too far away, 4 the orientation is not a unit quaternion) */
   HAPTICD_QUARANTINED, /* no daemon sends it: a run names the models that it leaves out before its first tick */
-  HAPTICD_STALLED, /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
+  HAPTICD_STALLED,  /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
+  HAPTICD_MARK,     /* a program marked this tick with a text; code: number of the row in the stream `marks` */
+  HAPTICD_END_STOP, /* the joint of a model came to the end of its range, after 50 ms or more elsewhere; model, code:
+                       HAPTICD_LOWEST or HAPTICD_HIGHEST */
   HAPTICD_EVENT_KINDS /* one more than the last kind */
 };
 enum { HAPTICD_WENT_IN = 1, HAPTICD_CAME_OUT }; /* hapticd_event.code of HAPTICD_CLICK */
+enum { HAPTICD_LOWEST = 1, HAPTICD_HIGHEST };   /* hapticd_event.code of HAPTICD_END_STOP */
 typedef struct hapticd_event {
   uint64_t tick;
   double t;             /* s since the first tick */
@@ -140,10 +144,10 @@ typedef struct hapticd_error {
   char code[32], text[992];
 } hapticd_error;
 
-/* Describes one number of a row. */
+/* Describes one value of a row: a number, or a text (s96: UTF-8 of at most 95 bytes, filled up with zeros). */
 typedef struct hapticd_column {
   const char *name, *unit, *doc;
-  char type[4];    /* f8, f4, u8, u4 or i4 */
+  char type[4];    /* f8, f4, u8, u4, i4 or s96 */
   uint32_t offset; /* bytes from the start of the row */
 } hapticd_column;
 

@@ -28,7 +28,11 @@ enum {
   HSP_OUT_HELD = 1u << 4,    /* the foot point is followed from an earlier tick; another point may be nearer */
   /* With HSP_OUT_EVENT: what snapped went in, or it came out again. Without either the direction is not known. */
   HSP_OUT_WENT_IN = 1u << 5,
-  HSP_OUT_CAME_OUT = 1u << 6
+  HSP_OUT_CAME_OUT = 1u << 6,
+  /* A joint that the plugin moves stands at the lowest, or at the highest, end of its range. Set it in the record of
+   * each probe, whether the probe touches the shape or not. */
+  HSP_OUT_AT_LOWEST = 1u << 7,
+  HSP_OUT_AT_HIGHEST = 1u << 8
 };
 typedef struct hsp_probe {         /* host -> plugin */
   double position[3], velocity[3]; /* m; m/s relative to the model, zero without HSP_R_VELOCITY */

@@ -50,11 +50,22 @@ struct Outgoing {
 void send(McapWriter& out, Outgoing& from, uint64_t tick, uint64_t time) {
   const RecordedStream& stream = *from.stream;
   const std::string_view head(kCdrHead.data(), kCdrHead.size());
+  std::string encoded;
   for (; from.next < stream.rows() && tickOf(stream, from.next) <= tick; ++from.next)
-    out.message(from.channel, time, head, {reinterpret_cast<const char*>(stream.row(from.next)), stream.rowBytes()});
+    out.message(
+        from.channel, time, head,
+        cdrBody(stream.columns(), {reinterpret_cast<const char*>(stream.row(from.next)), stream.rowBytes()}, encoded));
 }
 
-void appendNumber(std::string& line, const RecordedStream& stream, uint64_t row, const Column& column) {
+/// Appends a text in quotes, because it may contain commas. Quotes in it are written twice (RFC 4180).
+void appendText(std::string& line, const std::string& text) {
+  line += '"';
+  for (const char letter : text) line.append(letter == '"' ? 2 : 1, letter);
+  line += '"';
+}
+
+void appendValue(std::string& line, const RecordedStream& stream, uint64_t row, const Column& column) {
+  if (column.type == ColumnType::kText) return appendText(line, stream.text(row, column));
   const std::byte* at = stream.row(row) + column.offset;
   uint64_t count = 0;
   if (column.type == ColumnType::kCount) {  // not through a double, because it may have more than 53 bits
@@ -124,7 +135,7 @@ Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file
   for (uint64_t row = 0; good && row < stream.rows(); ++row, ++done.rows) {
     for (size_t i = 0; i < stream.columns().size(); ++i) {
       if (i > 0) line += ",";
-      appendNumber(line, stream, row, stream.columns()[i]);
+      appendValue(line, stream, row, stream.columns()[i]);
     }
     line += "\n";
     if (line.size() > (1u << 16)) good = flush();

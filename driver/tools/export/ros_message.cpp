@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 
 namespace hapticd::record {
 
@@ -20,6 +21,8 @@ const char* rosTypeOf(ColumnType type) {
       return "uint32";
     case ColumnType::kInt:
       return "int32";
+    case ColumnType::kText:
+      return "string";
   }
   return "uint8";
 }
@@ -45,11 +48,22 @@ std::string rosDefinition(const std::vector<Column>& columns) {
 bool liesAsCdr(const std::vector<Column>& columns) {
   uint32_t end = 0;
   for (const Column& column : columns) {
-    const uint32_t bytes = bytesOf(column.type);
-    if (column.offset != (end + bytes - 1) / bytes * bytes) return false;
-    end = column.offset + bytes;
+    const uint32_t unit = alignmentOf(column.type);
+    if (column.offset != (end + unit - 1) / unit * unit) return false;
+    if (column.type == ColumnType::kText && &column != &columns.back()) return false;
+    end = column.offset + bytesOf(column.type);
   }
   return true;
+}
+
+std::string_view cdrBody(const std::vector<Column>& columns, std::string_view row, std::string& encoded) {
+  if (columns.empty() || columns.back().type != ColumnType::kText) return row;
+  const uint32_t offset = columns.back().offset;
+  const std::string_view text(row.data() + offset, strnlen(row.data() + offset, kTextBytes));
+  const auto bytes = static_cast<uint32_t>(text.size() + 1);  // CDR counts the zero at the end
+  encoded.assign(row.substr(0, offset));
+  encoded.append(reinterpret_cast<const char*>(&bytes), sizeof bytes).append(text).push_back('\0');
+  return encoded;
 }
 
 }  // namespace hapticd::record

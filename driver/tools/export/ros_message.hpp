@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Turns rows into ROS 2 messages. The columns of a row are aligned as in CDR (OMG DDS-XTypes 1.3, 7.4.3): each number
 /// lies at a multiple of its size. So a message consists of four bytes and the unchanged row, and nothing has to be
-/// encoded.
+/// encoded, except for a text, which may only be the last column.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "record/columns.hpp"
@@ -23,5 +24,9 @@ std::string rosDefinition(const std::vector<Column>& columns);
 
 /// [any] True if rows of these columns have the layout of CDR. Otherwise no ROS reader can read them.
 bool liesAsCdr(const std::vector<Column>& columns);
+
+/// [any] Returns what follows the head in a message: the row itself, or, if its last column is a text, a copy of the row
+/// in which the text is a string of CDR. @param encoded memory for the copy
+std::string_view cdrBody(const std::vector<Column>& columns, std::string_view row, std::string& encoded);
 
 }  // namespace hapticd::record

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "hapticd/client.h"
 #include "servo/safety/limiter.hpp"
 #include "session/messages/silence_reason.hpp"
 
@@ -37,6 +38,11 @@ ModelLine modelLine(const status::Page& page, uint32_t i, const status::Name& na
 }
 
 }  // namespace
+
+std::string ModelLine::end() const {
+  if (now.at_end == 0) return "";
+  return now.at_end == HAPTICD_LOWEST ? "lowest" : "highest";
+}
 
 double ArmLine::force() const {
   return std::hypot(now.force[0], now.force[1], now.force[2]);

@@ -17,6 +17,8 @@ struct ModelLine {
   std::string silenced;              ///< why the model was silenced; "" if it was not
   double p50 = 0, p99 = 0, max = 0;  ///< [us] times of a step
   bool traced = false;               ///< stepped lately, with a depth
+  /// [any] Returns at which end of its range its joint stands: "lowest", "highest", or "".
+  std::string end() const;
 };
 
 struct ArmLine {

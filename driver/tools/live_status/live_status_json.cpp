@@ -48,7 +48,8 @@ Json toJson(const LiveStatus& live) {
                       {"feet", {{"nearest", m.feet.nearest}, {"held", m.feet.held}, {"degraded", m.feet.degraded}}},
                       {"status", m.now.status},
                       {"silenced", m.silenced.empty() ? Json() : Json(m.silenced)},
-                      {"waits", m.now.waits != 0}});
+                      {"waits", m.now.waits != 0},
+                      {"end", m.end().empty() ? Json() : Json(m.end())}});
   return {{"seconds", live.now.t},
           {"ticks", live.now.tick},
           {"rate_hz", live.rate},

@@ -30,6 +30,8 @@ std::string clientsTable(const LiveStatus& live) {
 std::string statusOf(const ModelLine& model) {
   if (!model.silenced.empty()) return "SILENCED";
   if (model.now.waits != 0) return "waits for the tip to leave it";
+  const std::string end = model.end();
+  if (!end.empty() && model.now.status == HSP_OK) return "at its " + end + " end";
   return model.now.status == HSP_OK ? "ok" : host::statusText(model.now.status);
 }
 

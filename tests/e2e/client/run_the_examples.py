@@ -152,7 +152,8 @@ def experiment(folder):
         with open(scene, "w") as file:
             file.write(text)
     out = os.path.join(folder, "session")
-    with Daemon(HAPTICD, folder, "trials", soft):
+    recorded = os.path.join(folder, "trials.h5")
+    with Daemon(HAPTICD, folder, "trials", soft, "--record", recorded):
         done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "4", "--seconds",
                                "2.5", "--out", out], env=environment, input="\n" * 4, capture_output=True, text=True, timeout=200)
     table = list(csv.DictReader(open(os.path.join(out, "trials.csv")))) if done.returncode == 0 else []
@@ -160,6 +161,9 @@ def experiment(folder):
     check("experiment.py presents each stimulus equally often", [len(f) for f in force.values()] == [2, 2], (done, table))
     check("each trial was felt, and the stiffer one more", all(row["valid"] == "1" for row in table) and min(force["hard.yaml"]) > 1.3 * max(force["soft.yaml"]), table)
     ticks = list(csv.DictReader(open(os.path.join(out, "trial-002.csv"))))
+    told = subprocess.run([HAPTICD, "explain", recorded], capture_output=True, text=True, timeout=60).stdout
+    check("the recording has a mark where each trial begins and ends", [line.split(" s  ")[1] for line in told.split("marks\n")[-1].split("\n")[:8]]
+          == [f"trial {i} {what}" for i in (1, 2, 3, 4) for what in ("begins", "ends")], told)
     check("a trial has its ticks without a gap", len(ticks) == int(table[1]["ticks"]) > 1000 and ticks[0]["tick"] == table[1]["tick"]
           and all(int(b["tick"]) - int(a["tick"]) == 1 for a, b in zip(ticks, ticks[1:])), table)
 

@@ -193,6 +193,32 @@ TEST_F(Commands, PluginNewMakesAPluginThatBuildsUnderItsName) {
     EXPECT_EQ(run(std::string("plugin new ") + name).exit_code, 2) << name;
 }
 
+TEST_F(Commands, PluginNewMakesShapesInCAndShapesThatMoveWhichPassTheirTests) {
+  for (const auto& [name, option, compiler, file] : {std::array{"my_c_ball", "--language c", "gcc", "my_c_ball.c"},
+                                                     std::array{"my_plate", "--moving", HAPTICD_CXX, "my_plate.cpp"}}) {
+    const std::string folder = (dir_ / name).string();
+    const Outcome made = run(std::string("plugin new ") + name + " " + option + " --dir " + folder);
+    ASSERT_EQ(made.exit_code, 0) << made.text;
+    const size_t line = made.text.find("build it:  g");
+    ASSERT_NE(line, std::string::npos) << made.text;
+    const std::string command = compiler + made.text.substr(line + 14, made.text.find('\n', line) - line - 14);
+    ASSERT_EQ(std::system((command + " -Wall -Wextra -Werror").c_str()), 0) << command;
+    const Outcome tested = run("plugin check " + folder + "/" + name + ".so");
+    EXPECT_EQ(tested.exit_code, 0) << tested.text;
+    EXPECT_TRUE(has(tested.text, ", 0 failed")) << tested.text;
+    EXPECT_FALSE(has(tested.text, "warn")) << tested.text;
+    const Outcome check = run("--plugin-path " + folder + " check " + folder + "/scene.yaml");
+    EXPECT_EQ(check.exit_code, 0) << check.text;
+    EXPECT_TRUE(has(check.text, "scene.yaml: ok")) << check.text;
+    const std::string texts = get(std::string(name) + "/" + file) + get(std::string(name) + "/CMakeLists.txt") +
+                              get(std::string(name) + "/README.md");
+    EXPECT_FALSE(has(texts, "emplate")) << texts;
+    EXPECT_TRUE(has(texts, std::string("Made with `hapticd plugin new ") + option + "`.")) << texts;
+  }
+  EXPECT_EQ(run("plugin new other --language c --moving --dir " + (dir_ / "other").string()).exit_code, 2);
+  EXPECT_EQ(run("plugin new other --language rust --dir " + (dir_ / "other").string()).exit_code, 2);
+}
+
 TEST_F(Commands, ExplainNamesTheVelocityEstimatorAsTheSceneDoes) {
   const std::string scene = put("scene.yaml",
                                 "hapticd: 1\nservo: {velocity: {estimator: window, parameter: 3}}\nmodels:\n"

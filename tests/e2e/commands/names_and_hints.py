@@ -26,6 +26,12 @@ def scene(folder, plugin, geometry, more=""):
     return write(folder, "scene.yaml", f"hapticd: 1\nmodels:\n  - {{name: ball, plugin: {plugin}, parameters: {{geometry: {geometry}{more}}}}}\n")
 
 
+def listed(folder, ask):
+    code, out, err = ask("check", scene(folder, "nurbs_rigid", os.path.join(SOURCE, "config/models/sphere.yaml"), ", friction_dyn: 0.3"))
+    check("a list that is cut begins with the names that may be meant", code == 2 and "expected one of friction_dynamic, friction_static, " in err + out
+          and "in all)" in err + out, err + out)
+
+
 def hidden(folder, ask):
     other = os.path.join(folder, "other")
     os.mkdir(other)
@@ -109,6 +115,7 @@ def plugin_files(folder, ask):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     said = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
+    listed(scratch, said)
     hidden(scratch, said)
     unloadable(scratch, said)
     geometries(scratch, said)

@@ -95,7 +95,10 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
     check("one that claims nothing is felt, and the run says so",
           re.search(r"ground pushed in \d+ ticks with depth_m left at 0", said) and "touched no model" not in said, said)
-    line = re.search(r"^    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M)[1].replace("my-plugins", os.path.join(folder, "my-plugins"))
+    new, line = re.search(r"^    hapticd (plugin new c_ball .*)\n    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M).groups()
+    code, said = run(HAPTICD, *new.split(), "--dir", os.path.join(folder, "c_ball"))
+    check("the README's shape in C is written", code == 0, said)
+    line = line.replace("my-plugins", os.path.join(folder, "my-plugins")).replace(" c_ball/", f" {folder}/c_ball/")
     done = subprocess.run(line.replace("gcc", "cc", 1), shell=True, cwd=SOURCE, capture_output=True, text=True, timeout=200)
     check("the README's shape in C compiles with its line", done.returncode == 0, done.stderr[-800:])
     code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/c_ball.so"), "--timeout", "60")

@@ -4,6 +4,7 @@
 Usage: record_and_replay.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 """
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish, program
+from e2e import check, finish, program, until
 
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
 hapticd = program(HAPTICD, together=True)
@@ -25,6 +26,16 @@ def replayIsExact(folder, scene, seconds="1"):
     code, told = hapticd("replay", file)
     check(scene + " replays with every bit the same", code == 0, told)
     return file
+
+
+def arrivalsAt(ticks, there):
+    """The ticks in which a joint comes to an end where it was not for the last 50 ms. One that begins there has not come."""
+    last, found = None, []
+    for tick in ticks[there].tolist():
+        if last is None and tick > ticks[0] or last is not None and tick - last >= 50:
+            found.append(tick)
+        last = tick
+    return found
 
 
 def aDoorStandsAtItsStop(folder):
@@ -49,6 +60,12 @@ def aDoorStandsAtItsStop(folder):
           and "at its stop at 0.6 rad for " in told and "(1 time: " in told, told)
     first = poses["tick"][abs(angles - 0.6) < 1e-12][0] / 1000
     check("and when", f"(1 time: {first:.4g} to " in told, (first, told))
+    about, events = json.loads(recording["about"][()]), recording["events"][:]
+    stops = events[events["kind"] == about["events"].index("end_stop")]
+    arrivals = [tick for stop in (0, 0.6) for tick in arrivalsAt(poses["tick"], abs(angles - stop) < 1e-9)]
+    check("an event tells each time that it comes to an end", len(stops) > 1 and sorted(stops["tick"].tolist()) == sorted(arrivals), (stops, arrivals))
+    check("and which end", all(abs(angles[poses["tick"] == row["tick"]][0] - (0, 0.6)[row["code"] - 1]) < 1e-9 for row in stops), stops)
+    check("contacts do not have it", not (contacts["flags"] & 0x180).any())
     table = os.path.join(folder, "door-tables")
     code, told = hapticd("export", file, "--csv", table)
     joints = numpy.genfromtxt(os.path.join(table, "joints.csv"), delimiter=",", names=True, dtype=None, encoding=None)
@@ -88,6 +105,27 @@ def ordersAreTold(folder, environment):
     code, told = hapticd("explain", file)
     for words in (" s  set teapot stiffness 600\n", " s  disable teapot\n", " of it the model gave no force (it was disabled"):
         check(f"explain tells: {words.strip()}", code == 0 and words in told, told)
+
+
+def aStopIsTold(folder, environment):
+    """While a door stands at its end stop, top and list say so, and subscribers hear of it."""
+    with subprocess.Popen([HAPTICD, "run", os.path.join(SCENES, "door.yaml"), "--for", "100", "--name", "stop"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        ask = program(HAPTICD, environment, together=True)
+        check("the run starts", ask("ctl", "--name", "stop", "--wait", "30", "status")[0] == 0)
+        tops, lists = set(), set()
+        def bothSeen():
+            code, told = ask("top", "--name", "stop", "--once", "--json")
+            if code == 0:
+                tops.add(json.loads(told)["models"][0]["end"])
+            code, told = ask("ctl", "--name", "stop", "list")
+            if code == 0:
+                lists.add(json.loads(told)["models"][0]["end"])
+            return {"lowest", "highest"} <= tops and {"lowest", "highest"} <= lists
+        check("top and list tell at which end the door stands", until(bothSeen, 60), (tops, lists))
+        ends = lambda: {e.get("end") for e in map(json.loads, ask("ctl", "--name", "stop", "events")[1].splitlines()) if e["event"] == "end_stop"}
+        check("the events tell both ends", until(lambda: ends() == {"lowest", "highest"}, 30), ends())
+        check("top says it in words", until(lambda: "at its highest end" in ask("top", "--name", "stop", "--once")[1], 60))
+        run.terminate()
 
 
 def aHoldIsAFault(folder, environment):
@@ -177,6 +215,7 @@ with tempfile.TemporaryDirectory() as scratch:
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
     ordersAreTold(scratch, environment)
+    aStopIsTold(scratch, environment)
     aHoldIsAFault(scratch, environment)
     killLeavesAReadableFile(scratch, environment)
 finish()

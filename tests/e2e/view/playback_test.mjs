@@ -68,7 +68,9 @@ test('a recording goes on where it was when the connection is back', () => brows
 test('what a crash left is shown, plays in a loop, and its events have times', () => browser.sandboxed(async (sandbox, open) => {
   const daemon = sandbox.start(['run', scenes('button'), '--name', 'test']);
   await until(() => existsSync(join(sandbox.folder, 'test.sock')), kPatience, 'a daemon');
-  await new Promise((resolve) => setTimeout(resolve, 4000));
+  await new Promise((resolve) => setTimeout(resolve, 2000));
+  execFileSync(hapticd, ['ctl', '--name', 'test', 'mark', 'trial <b>7</b> begins'], {env: {...process.env, ...sandbox.env}, stdio: 'ignore'});
+  await new Promise((resolve) => setTimeout(resolve, 2000));
   await daemon.end('SIGKILL');
   const [url] = await sandbox.start(['view', '--file', join(sandbox.folder, 'test.blackbox.h5')]).says(/http:\S+/);
   const page = await open(url);
@@ -85,6 +87,11 @@ test('what a crash left is shown, plays in a loop, and its events have times', (
   await until(() => page.evaluate(() => window.hapticdView.timeline.state.playing === false), kPatience, 'a stop at the end');
   await page.getByRole('tab', {name: 'Events'}).click();
   await page.getByText('button: click').first().waitFor();
+  const mark = page.locator('#events li', {has: page.getByText('trial <b>7</b> begins', {exact: true})}); // as text
+  await mark.first().waitFor();
+  assert.equal(await mark.first().locator('i').getAttribute('class'), 'mark');
+  assert.ok(await page.evaluate(() => window.hapticdView.plots.marks.some(({kind}) => kind === 'mark')), 'a line in the plots');
+  assert.equal(await page.getByText('marked', {exact: true}).count(), 0, 'it is told once');
   await page.screenshot({path: join(pictures, 'crash.png')});
 }));
 

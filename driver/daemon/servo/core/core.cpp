@@ -39,13 +39,13 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       present_(static_cast<uint32_t>(models.size())) {
   serve(RequiredResults{});
   claim_step_.former = settings.former_claims;
-  for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
+  for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i], settings.keep_disabled);
   live_.reserve(models_.size());
   loads_.reserve(models_.size());
   listLive();
 }
 
-ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& described) {
+ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& described, bool keep_disabled) {
   ModelState model;
   model.shape = &shape;
   Map(model.pose.position) = described.pose.position;
@@ -66,6 +66,9 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   model.claims.damping = shape.claimedDamping();
   model.claims.jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   model.claims.moves_itself = moves_itself;
+  model.dormant = keep_disabled && !described.enabled;
+  model.enabled = !model.dormant;
+  if (model.dormant) model.guard.silence();  // so that its force fades in
   return model;
 }
 
@@ -121,7 +124,7 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
       ++model.degraded_ticks;
       continue;
     }
-    if (model.always || model.active_surfaces > 0) stepModel(i, t, dt, probes);
+    if (isTraced(model)) stepModel(i, t, dt, probes);
     if (model.moves) sendTransform(model, i);
   }
   releaseLeaving();
@@ -138,12 +141,18 @@ void Core::moveKinematic(ModelState& model, double t, double dt) noexcept HSP_RT
   model.frame = Frame::of(model.pose);
 }
 
+bool Core::isTraced(const ModelState& model) noexcept HSP_RT {
+  return !model.dormant && (model.always || model.active_surfaces > 0);
+}
+
 void Core::listLive() noexcept HSP_RT {
   live_.clear();
   for (uint32_t i = 0; i < models_.size(); ++i) {
-    const bool traced = models_[i].always || models_[i].active_surfaces > 0;
-    if (traced || models_[i].moves) live_.push_back(i);  // capacity is reserved for all models, so this never allocates
-    if (!traced) clearContacts(i);                       // a model on a path still moves, but has no foot point
+    const ModelState& model = models_[i];
+    const bool traced = isTraced(model);
+    const bool moves = model.moves && (!model.dormant || model.kinematic);  // a dormant body rests where it begins
+    if (traced || moves) live_.push_back(i);  // capacity is reserved for all models, so this never allocates
+    if (!traced) clearContacts(i);            // a model on a path still moves, but has no foot point
   }
 }
 
@@ -224,7 +233,9 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const bool wanted = model.enabled && (!model.until_free || !good || enters(model, probes, pace));
   const double gain = model.guard.gain(good, wanted, pace);
   const double fade = gain_before > 0 ? gain / gain_before : 0;
+  model.at_end = 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
+    model.at_end |= outputs_[i].flags & (HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST);
     if (good) {
       takeContact(model, index, i, gain);
     } else {

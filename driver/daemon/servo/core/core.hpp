@@ -48,6 +48,7 @@ struct ModelState {
   MinimumJerk glide;  ///< motion that a user asked for (ctl move); it overrides the path
   bool kinematic = false;
   bool enabled = true;      ///< true: it is felt; false: its force fades out, and it is only traced
+  bool dormant = false;     ///< true: it has started disabled, and is not stepped until it is enabled
   bool leaving = false;     ///< true if its force fades out, after which it is removed from the run
   bool until_free = false;  ///< true: it is not felt until every tip has been outside for some time, see enters()
   double free_for = 0;      ///< [s] time for which no tip has been inside; used while until_free is true
@@ -56,6 +57,7 @@ struct ModelState {
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
   bool always = false;  ///< true: it is stepped in every tick, because its plugin finds the foot points or moves it
   bool moves = false;   ///< true if its pose may change
+  uint32_t at_end = 0;  ///< HSP_OUT_AT_LOWEST or HSP_OUT_AT_HIGHEST if a joint stands there; else 0
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Breach breach;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
@@ -84,6 +86,7 @@ struct CoreSettings {
   double evaluation_ns = 0;
   /// for old recordings: torques are not bounded, nor is the step after a parameter was set
   bool former_claims = false;
+  bool keep_disabled = false;  ///< false: models that the scene disables are enabled, see WorldOptions
 };
 
 /// The results of a tick that the arms use. Other results are not computed.
@@ -112,7 +115,8 @@ class Core {
   void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
 
   /// [main] Returns the state with which the servo starts an active shape.
-  static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
+  /// @param keep_disabled false: it is enabled, even if it is described as disabled
+  static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described, bool keep_disabled = true);
 
   /// [rt] Called before tick(): sets the accuracy of each model from the cost of the last tick. @return what changed
   std::span<const LoadShedding::Change> shedLoad() noexcept HSP_RT;
@@ -152,6 +156,8 @@ class Core {
 
  private:
   bool adopt(ModelState& place, const Order& order) noexcept HSP_RT;
+  bool enable(ModelState& model, uint32_t param) noexcept HSP_RT;
+  static bool isTraced(const ModelState& model) noexcept HSP_RT;
   bool change(ModelState& model, const Order& order) noexcept HSP_RT;
   void releaseLeaving() noexcept HSP_RT;
   void receiveRecords() noexcept HSP_RT;

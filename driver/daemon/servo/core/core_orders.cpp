@@ -14,9 +14,7 @@ bool Core::apply(const Order& order, double t) noexcept HSP_RT {
   if (model.shape == nullptr) return false;
   switch (order.kind) {
     case Order::Kind::kEnable:
-      if (order.param == Order::kOnceFree && !model.enabled) model.until_free = true, model.free_for = 0;
-      model.enabled = !model.leaving;
-      return !model.leaving;
+      return enable(model, order.param);
     case Order::Kind::kDisable:
       model.enabled = false;
       return true;
@@ -46,6 +44,16 @@ bool Core::apply(const Order& order, double t) noexcept HSP_RT {
     default:
       return false;
   }
+}
+
+bool Core::enable(ModelState& model, uint32_t param) noexcept HSP_RT {
+  if (param == Order::kOnceFree && !model.enabled) model.until_free = true, model.free_for = 0;
+  model.enabled = !model.leaving;
+  if (model.enabled && model.dormant) {
+    model.dormant = false;
+    listLive();
+  }
+  return model.enabled;
 }
 
 bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
@@ -86,13 +94,12 @@ void Core::releaseLeaving() noexcept HSP_RT {
   if (leaving_ == 0 || received_count_ == received_.size()) return;
   for (uint32_t i = 0; i < models_.size() && leaving_ > 0; ++i) {
     ModelState& model = models_[i];
-    const bool stepped = model.always || model.active_surfaces > 0;
-    if (!model.leaving || (stepped && model.guard.gain() > 0)) continue;
+    if (!model.leaving || (isTraced(model) && model.guard.gain() > 0)) continue;
     if (!released_.push(i)) return;
     model.leaving = false;
     model.shape = nullptr;
     model.guard = Guard();
-    model.moves = model.always = false;
+    model.moves = model.always = model.dormant = false;
     model.active_surfaces = 0;
     --leaving_;
     --present_;

@@ -28,9 +28,11 @@ struct Order {
     kOverran,   ///< the model's step took too long and was counted as a strike (Guard::strike())
     kCut,       ///< the watchdog cut the arm's motors
     // Leads of other programs.
-    kLead,   ///< a leader begins; `param` says what it leads
-    kUnlead  ///< the leader has gone
+    kLead,    ///< a leader begins; `param` says what it leads
+    kUnlead,  ///< the leader has gone
+    kMark     ///< a program marks this tick with a text. It changes nothing; the stream `marks` has it, not `orders`
   };
+  static constexpr uint32_t kTextBytes = 96;  ///< [bytes] size of `text`, with the zero at its end
   /// What a lead moves: `param` of kLead and kUnlead.
   enum class Led : uint32_t {
     kModel,  ///< the pose of a kinematic model
@@ -49,6 +51,7 @@ struct Order {
   ModelState* model = nullptr;  ///< kAdopt: the prepared model; its content is swapped with that of the empty place
   const link::PoseSlot* slot = nullptr;  ///< kLead: the leader's memory, valid until kUnlead was obeyed
   const link::PushSlot* push = nullptr;  ///< kLead of a force: the program's memory, valid until kUnlead was obeyed
+  char text[kTextBytes] = {};            ///< kMark: UTF-8 without control characters, filled up with zeros
 };
 
 }  // namespace hapticd::servo

@@ -27,7 +27,9 @@ void EventLog::logNewEvents(const Flight& flight) {
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
-      const Message message = messageOf(event);
+      Message message = messageOf(event);
+      if (MarkRow mark; event.kind == HAPTICD_MARK && flight.mark(event.code, mark))
+        message = {HSP_LOG_INFO, "", fmt::format("mark at {:.4f} s: {}", event.t, mark.text)};
       note(event);
       if (!message.text.empty()) log::write(message.level, message.who, message.text);
     }
@@ -125,6 +127,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
                     "limits.ramp_in)\n  fix: move "
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event).name, event.t)};
+    case HAPTICD_END_STOP:
+      return {HSP_LOG_DEBUG, who, fmt::format("its joint came to its {} end at {:.4f} s", endOf(event), event.t)};
     case HAPTICD_SILENCED:
       return {HSP_LOG_ERROR, "", silenceReason(event, who, file)};
     case HAPTICD_DEGRADED:

@@ -69,6 +69,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
   nameModels(log.names(), run.scene);
   for (uint64_t row = 0; row < events->rows(); ++row) {
     const hapticd_event event = eventAt(*events, columns, row);
+    if (event.kind == HAPTICD_END_STOP) continue;  // the motion of a joint tells more
     EventLog::Message message = log.messageOf(event);
     log.note(event);
     if (!message.text.empty())

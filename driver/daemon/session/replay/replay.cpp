@@ -50,7 +50,7 @@ SampleColumns sampleColumns(const RecordedStream& ticks, size_t index) {
 
 /// True for streams that recordings of version 0.1 do not have.
 bool isLater(const std::string& stream) {
-  static constexpr std::string_view kLater[] = {"leads", "events", "pushes", "links", "motors"};
+  static constexpr std::string_view kLater[] = {"leads", "events", "pushes", "links", "motors", "marks"};
   return std::find(std::begin(kLater), std::end(kLater), stream) != std::end(kLater);
 }
 
@@ -299,6 +299,8 @@ class Replay::Player final : public Clock {
         return at<uint32_t>(row, column.offset);
       case record::ColumnType::kInt:
         return at<int32_t>(row, column.offset);
+      case record::ColumnType::kText:  // streams with texts are not compared
+        break;
     }
     return 0;
   }
@@ -330,6 +332,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
   options.max_force = maxForceOf(scene, replay->run_.devices);
   options.former_claims = replay->run_.facts.former_claims;
+  options.keep_disabled = true;
   std::optional<SetupWatch> waiting(std::in_place, log);
   auto world = World::build(scene, options, log);
   waiting.reset();

@@ -113,6 +113,11 @@ status::ModelStatus nowOf(const Session& session, uint32_t place) {
                                     : status::ModelStatus{};
 }
 
+/// Returns at which end of its range a joint stands, or null.
+Json endJson(uint32_t at_end) {
+  return at_end == 0 ? Json() : Json(at_end == HAPTICD_LOWEST ? "lowest" : "highest");
+}
+
 Json modelJson(const Session& session, uint32_t place) {
   const ModelPlace& taken = session.places[place];
   const auto leader = session.leads.leader(Order::Led::kModel, place);
@@ -127,7 +132,8 @@ Json modelJson(const Session& session, uint32_t place) {
           {"pose", poseJson(session, place)},
           {"silenced", why.empty() ? Json() : Json(why)},
           {"deforms", deforms},
-          {"waits", waitsForTip(session, place)}};
+          {"waits", waitsForTip(session, place)},
+          {"end", endJson(nowOf(session, place).at_end)}};
 }
 
 Json silencedJson(const Session& session) {
@@ -254,7 +260,7 @@ std::string noSuchParameter(const hsp_class& plugin, const std::string& paramete
                     other = meant.empty() ? document::suggestionOfName(word, others) : "";
   return "parameter \"" + word + "\" of " + plugin.name + ": there is no " +
          ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
-         document::listed(names) + meant + other +
+         document::listedFor(word, names) + meant + other +
          (other.empty() ? "" : "\n  fix: parameters that are not live change in the scene, then: hapticd ctl reload");
 }
 
@@ -262,7 +268,7 @@ std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {
   std::vector<std::string> names;
   for (const scene::Device& one : scene.devices) names.push_back(one.name);
   const std::string wanted = device.substr(0, 100);
-  return "there is no device \"" + wanted + "\", expected one of: " + document::listed(names) +
+  return "there is no device \"" + wanted + "\", expected one of: " + document::listedFor(wanted, names) +
          document::suggestionOfName(wanted, names);
 }
 
@@ -339,6 +345,9 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["code"] = event.code;
   json["value"] = event.value;
   if (*directionOfClick(event) != 0) json["snapped"] = directionOfClick(event);
+  if (*endOf(event) != 0) json["end"] = endOf(event);
+  if (MarkRow mark; event.kind == HAPTICD_MARK && session.runner.telemetry().flight()->mark(event.code, mark))
+    json["text"] = mark.text;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);

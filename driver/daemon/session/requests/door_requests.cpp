@@ -8,6 +8,7 @@
 
 #include "session/messages/program_name.hpp"
 #include "session/requests/request_handler.hpp"
+#include "session/requests/wait_until.hpp"
 
 namespace hapticd::servo {
 
@@ -151,6 +152,20 @@ Result<std::string> RequestHandler::eventsAfter(double after) const {
   std::string list;
   for (const hapticd_event& event : events) list += (list.empty() ? "" : ",") + eventText(session(), event);
   return fmt::format(R"({{"ok":true,"first":{},"next":{},"events":[{}]}})", first, first + events.size(), list);
+}
+
+/// Marks a tick with a text. The answer says which tick it is.
+Result<std::string> RequestHandler::mark(const std::string& text) {
+  const Flight& flight = *runner_.telemetry().flight();
+  const uint64_t number = flight.ring().written(kMarks);  // of the next mark, because only this thread gives them
+  Order order;
+  order.kind = Order::Kind::kMark;
+  text.copy(order.text, sizeof order.text - 1);
+  if (auto given = post(order); !given) return Error{given.error()};
+  MarkRow row;
+  if (!waitUntil([&] { return flight.mark(number, row); }))
+    return refuse("timeout", "the servo has not ended the tick of the mark within 2 s: see hapticd ctl status");
+  return lineOf({{"ok", true}, {"tick", row.tick}, {"t", row.t}});
 }
 
 Result<std::string> RequestHandler::subscribe(const control::Peer& peer) {

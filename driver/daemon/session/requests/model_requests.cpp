@@ -124,10 +124,11 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   if (models.empty()) {
     std::vector<std::string> names;
     for (const scene::Model& model : scene->models) names.push_back(model.name);
-    return refuse("unknown", request.file + ": the scene has no model" +
-                                 (request.model.empty() ? std::string()
-                                                        : " \"" + request.model.substr(0, 100) +
-                                                              "\", expected one of " + document::listed(names, 20)));
+    return refuse("unknown",
+                  request.file + ": the scene has no model" +
+                      (request.model.empty() ? std::string()
+                                             : " \"" + request.model.substr(0, 100) + "\", expected one of " +
+                                                   document::listedFor(request.model, names, 20)));
   }
   for (const scene::Model& model : models)
     if (placeOf(model.name))
@@ -182,7 +183,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.target = place;
     order.model = prepared_.back().get();
     const auto given = post(order);
-    places_[place] = {models[i], true, true};
+    places_[place] = {models[i], true, models[i].enabled};
     // The shape is kept even if the servo did not obey in time, because the servo may obey later.
     runner_.world().store(place, std::move(shapes[i]), models[i]);
     if (!given) return given;

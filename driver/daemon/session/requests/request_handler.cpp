@@ -61,7 +61,10 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       places_(runner.world().places()),
       leads_([this](const Order& order) { return post(order); }, runner.scene().clients.exclusive,
              [this](uint32_t arm, const Leads::Pusher& who, Leads::PushEvent news) { reportPusher(arm, who, news); }) {
-  for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
+  for (size_t i = 0; i < runner.scene().models.size(); ++i) {
+    const scene::Model& model = runner.scene().models[i];
+    places_[i] = {model, true, model.enabled};
+  }
 }
 
 control::Reply RequestHandler::answer(const control::Peer& peer, const std::string& line,
@@ -134,6 +137,8 @@ Result<std::string> RequestHandler::execute(const control::Peer& peer, const Req
       return hold(request.device, code_);
     case Request::Kind::kClear:
       return plain(clear(peer, request.device));
+    case Request::Kind::kMark:
+      return mark(request.text);
     case Request::Kind::kDump: {
       auto file = dump("asked for");
       if (!file) return Error{file.error()};
@@ -188,9 +193,10 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
     if (places_[i].taken && places_[i].model.name == model) return i;
     if (places_[i].taken) names.push_back(places_[i].model.name);
   }
-  return refuse("unknown", "there is no model \"" + model.substr(0, 100) + "\", " +
-                               (names.empty() ? "nor any other" : "expected one of " + document::listed(names)) +
-                               document::suggestionOfName(model.substr(0, 100), names));
+  return refuse("unknown",
+                "there is no model \"" + model.substr(0, 100) + "\", " +
+                    (names.empty() ? "nor any other" : "expected one of " + document::listedFor(model, names)) +
+                    document::suggestionOfName(model.substr(0, 100), names));
 }
 
 Result<void> RequestHandler::post(const Order& order) {
@@ -225,11 +231,14 @@ Result<std::string> RequestHandler::enable(const std::string& model) {
   // [s] Time in which the servo has surely stepped the model once. This can be short because a disabled model is still
   // traced; only its force is off.
   constexpr double kMet = 0.02;
-  if (auto done = setEnabled(model, true); !done) return Error{done.error()};
-  nlohmann::ordered_json json = {{"ok", true}};
+  constexpr double kFound = 0.25;  // [s] the same for a model that has started disabled: first the search finds it
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
-  if (auto waiting = waitingOf({places_[*place].model}, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
+  const bool woken = runner_.world().wake(*place, places_[*place].model);
+  if (auto done = setEnabled(model, true); !done) return Error{done.error()};
+  nlohmann::ordered_json json = {{"ok", true}};
+  if (auto waiting = waitingOf({places_[*place].model}, woken ? kFound : kMet); !waiting.empty())
+    json["waiting"] = std::move(waiting);
   return lineOf(json);
 }
 

@@ -82,6 +82,7 @@ class RequestHandler {
                       SealedMemory::Writers writers);
   Result<void> unlead(const control::Peer& peer, const control::Request& request);
   Result<void> post(const Order& order);
+  Result<std::string> mark(const std::string& text);
   Result<std::string> enable(const std::string& model);
   Result<void> setEnabled(const std::string& model, bool enabled);
   Result<void> set(const control::Request& request);

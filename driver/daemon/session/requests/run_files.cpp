@@ -78,7 +78,7 @@ void clearDead(const std::string& folder) {
 /// Describes a scene, such as "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
 std::string contents(const scene::Scene& scene) {
   std::vector<std::string> models, devices;
-  for (const scene::Model& model : scene.models) models.push_back(model.name);
+  for (const scene::Model& model : scene.models) models.push_back(model.name + (model.enabled ? "" : " (disabled)"));
   for (const scene::Device& device : scene.devices) devices.push_back(device.name);
   std::string text = models.empty() ? "no model" : models.size() == 1 ? "model " : "models ";
   text += document::listed(models, 6) + " on " + document::listed(devices) + "; ";

@@ -2,6 +2,7 @@
 #include "session/telemetry/event_finder.hpp"
 
 #include <iterator>
+#include <utility>
 
 namespace hapticd::servo {
 
@@ -100,12 +101,23 @@ void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP
     const double value = sized ? model.breach.force : model.failed_status;
     add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.fault), value);
   }
+  if (stepped) findEnd(t, number, model, note);
   if (model.level != note.level) {
     add(model.level > 0 ? HAPTICD_DEGRADED : HAPTICD_RESTORED, number, -1, 0, model.level);
     note.level = model.level;
   }
   if (const uint64_t count = model.lead.refused(); refused(t, count, note))
     add(HAPTICD_REFUSED, number, -1, codeOf(Order::Led::kModel, model.lead.why()), static_cast<double>(count));
+}
+
+/// Finds that a joint came to an end of its range. One that begins there has not come to it.
+void EventFinder::findEnd(double t, int32_t number, const ModelState& model, ModelNote& note) noexcept HSP_RT {
+  const bool known = std::exchange(note.seen, true);
+  if (model.at_end == 0) return;
+  if (known && t - note.at_end >= kFreeFor)
+    add(HAPTICD_END_STOP, number, -1,
+        (model.at_end & HSP_OUT_AT_LOWEST) != 0 ? uint32_t{HAPTICD_LOWEST} : uint32_t{HAPTICD_HIGHEST}, 0);
+  note.at_end = t;
 }
 
 void EventFinder::check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
@@ -152,10 +164,15 @@ const char* directionOfClick(const hapticd_event& event) {
   return event.code == HAPTICD_WENT_IN ? "in" : "out";
 }
 
+const char* endOf(const hapticd_event& event) {
+  if (event.kind != HAPTICD_END_STOP) return "";
+  return event.code == HAPTICD_LOWEST ? "lowest" : "highest";
+}
+
 const char* nameOfEvent(uint32_t kind) {
-  static constexpr const char* kNames[] = {"",         "click",    "touch",    "fault",       "cleared",
-                                           "silenced", "degraded", "restored", "came",        "left",
-                                           "joined",   "lost",     "refused",  "quarantined", "stalled"};
+  static constexpr const char* kNames[] = {"",         "click",       "touch",   "fault", "cleared", "silenced",
+                                           "degraded", "restored",    "came",    "left",  "joined",  "lost",
+                                           "refused",  "quarantined", "stalled", "mark",  "end_stop"};
   static_assert(std::size(kNames) == HAPTICD_EVENT_KINDS);
   return kind < std::size(kNames) ? kNames[kind] : "";
 }

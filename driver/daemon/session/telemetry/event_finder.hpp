@@ -30,6 +30,8 @@ class EventFinder {
 
   /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
+  /// [rt] Called for each mark of this tick. @param number number of its row in the stream `marks`
+  void mark(uint32_t number) noexcept HSP_RT { add(HAPTICD_MARK, -1, -1, number, 0); }
   /// [rt] Called after a tick at t [s]: finds its events.
   void tick(double t, const Core& core, const Arms& arms) noexcept HSP_RT;
 
@@ -45,9 +47,10 @@ class EventFinder {
   /// The state of a model one tick ago.
   struct ModelNote : RefusedNote {
     std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
+    double at_end = never()[0];  ///< [s] time when its joint was last at an end of its range
     uint32_t level = 0;
     ShapeFault fault = ShapeFault::kNone;
-    bool leaving = false;
+    bool leaving = false, seen = false;  ///< seen: it was stepped
   };
   struct ArmNote : RefusedNote {  // its own counts are for the leader of the hand, `pushes` for the pushing programs
     Fault fault = Fault::kNone;
@@ -62,6 +65,7 @@ class EventFinder {
   void add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT;
   void check(double t, uint32_t index, const Core& core) noexcept HSP_RT;
   void check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT;
+  void findEnd(double t, int32_t number, const ModelState& model, ModelNote& note) noexcept HSP_RT;
   void findLeft(const Core& core) noexcept HSP_RT;
   template <class Note>
   bool refused(double t, uint64_t now, Note& note) noexcept HSP_RT;
@@ -78,6 +82,9 @@ const char* whyRefused(const hapticd_event& event);
 
 /// [main] Returns "in" or "out" for an event HAPTICD_CLICK whose direction is known; "" for other events.
 const char* directionOfClick(const hapticd_event& event);
+
+/// [main] Returns "lowest" or "highest" for an event HAPTICD_END_STOP; "" for other events.
+const char* endOf(const hapticd_event& event);
 
 /// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.
 const char* nameOfEvent(uint32_t kind);

@@ -9,9 +9,9 @@ namespace hapticd::servo {
 
 namespace {
 
-/// The direction of a click is in the row of its event. Rows of contacts do not have these flags, so that recordings
-/// from before these flags replay to the same bits.
-constexpr uint32_t kOnlyInEvents = HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT;
+/// The direction of a click and the end of a joint are in the rows of their events. Rows of contacts do not have these
+/// flags, so that recordings from before these flags replay to the same bits.
+constexpr uint32_t kOnlyInEvents = HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT | HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST;
 
 void copy3(double* to, const Eigen::Vector3d& from) noexcept HSP_RT {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
@@ -87,7 +87,28 @@ void Flight::begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT {
   for (size_t i = 0; i < arms.size(); ++i) faults_before_[i] = static_cast<uint32_t>(arms[i]->limiter().fault());
 }
 
+bool Flight::mark(uint64_t number, MarkRow& row) const {
+  return ring_->copy(kMarks, number, 1, reinterpret_cast<std::byte*>(&row)) == 1;
+}
+
+/// Keeps a mark until the time of its tick is known. The number of its row is known already.
+void Flight::mark(const Order& order) noexcept HSP_RT {
+  if (mark_count_ == marks_.size()) return;
+  events_.mark(static_cast<uint32_t>(ring_->written(kMarks) + mark_count_));
+  copyAll(marks_[mark_count_++].text, order.text);
+}
+
+void Flight::marks(double t) noexcept HSP_RT {
+  for (size_t i = 0; i < mark_count_; ++i) {
+    marks_[i].tick = tick_;
+    marks_[i].t = t;
+    push(kMarks, marks_[i]);
+  }
+  mark_count_ = 0;
+}
+
 void Flight::order(const Order& order) noexcept HSP_RT {
+  if (order.kind == Order::Kind::kMark) return mark(order);
   events_.order(order);
   OrderRow row;
   row.tick = tick_;
@@ -119,6 +140,7 @@ void Flight::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, cons
   links(t, arms);
   motors(t, arms);
   activations(core);
+  marks(t);  // before the events that name them
   events(t, core, arms);
   std::byte* to = ring_->next(kTicks);
   std::memcpy(to, &row, sizeof row);

@@ -28,6 +28,7 @@ enum FlightStream : size_t {
   kPushes,
   kLinks,
   kMotors,
+  kMarks,
   kFlightStreams
 };
 
@@ -101,6 +102,14 @@ struct MotorRow {
   double winding = 0, share = 0;
 };
 
+/// A text with which a program marked the tick.
+struct MarkRow {
+  uint64_t tick = 0;
+  double t = 0;
+  char text[Order::kTextBytes] = {};
+};
+static_assert(Order::kTextBytes == record::kTextBytes);
+
 /// Further columns of an arm on which programs may push, after the columns of its joints.
 struct ClientColumns {
   double force[3] = {}, torque[3] = {};
@@ -141,6 +150,8 @@ class Flight {
   /// [any] Returns at most `most` events, from number `first` on. Events that are no longer kept are skipped: `first`
   /// becomes the number of the first event that is returned.
   std::vector<hapticd_event> events(uint64_t& first, size_t most) const;
+  /// [any] Reads the mark of this number, as an event HAPTICD_MARK has it in `code`. Returns false if it is not kept.
+  bool mark(uint64_t number, MarkRow& row) const;
 
  private:
   /// Offsets of the columns of one arm in a row of kTicks, and its number of joints.
@@ -155,6 +166,8 @@ class Flight {
   void lead(Order::Led led, uint32_t target, const hapticd_target* taken) noexcept HSP_RT;
   void pushes(uint32_t index, const Arm& arm) noexcept HSP_RT;
   void motors(double t, const Arms& arms) noexcept HSP_RT;
+  void mark(const Order& order) noexcept HSP_RT;
+  void marks(double t) noexcept HSP_RT;
   void links(double t, const Arms& arms) noexcept HSP_RT;
   void events(double t, const Core& core, const Arms& arms) noexcept HSP_RT;
   void activations(const Core& core) noexcept HSP_RT;
@@ -164,6 +177,9 @@ class Flight {
   std::unique_ptr<record::FlightRing> ring_;
   std::vector<ArmColumns> columns_;
   std::vector<uint32_t> faults_before_;
+  static constexpr size_t kMostMarks = 16;  ///< marks of one tick, which obeys no more orders
+  std::array<MarkRow, kMostMarks> marks_;   ///< marks of this tick, whose time is not known yet
+  size_t mark_count_ = 0;
   Nanoseconds now_ = 0;
   uint64_t tick_ = 0;
   double links_due_ = 0, motors_due_ = 0;  ///< [s] times when the next rows are due

@@ -191,6 +191,15 @@ RowLayout motorColumns() {
   return layout;
 }
 
+/// The columns in the order of MarkRow.
+RowLayout markColumns() {
+  RowLayout layout;
+  layout.add("tick", ColumnType::kCount, "", "number of the tick");
+  layout.add("t", ColumnType::kReal, "s", "time since the first tick");
+  layout.add("text", ColumnType::kText, "", "what the program wrote: UTF-8, filled up with zeros");
+  return layout;
+}
+
 /// The columns in the order of ClientColumns.
 void clientColumns(RowLayout& layout, const std::string& arm) {
   vector(layout, arm + "client_f", "N", "force of programs on the hand, bounded and ramped, before the limits");
@@ -211,8 +220,8 @@ RowLayout eventColumns() {
   layout.add(
       "code", ColumnType::kWord, "",
       "its meaning depends on kind: direction of a click (1 snapped in, 2 snapped out, 0 not known), number of the "
-      "fault, of the reason why a model was silenced, or of what a program moves (0 a model, 1 a simulated hand, 2 "
-      "a force); see the header client.h");
+      "fault, of the reason why a model was silenced, of the row of a mark in the stream marks, or of what a program "
+      "moves (0 a model, 1 a simulated hand, 2 a force); see the header client.h");
   layout.add("value", ColumnType::kReal, "", "measured value; see the header client.h");
   return layout;
 }
@@ -258,6 +267,7 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const Arms& arm
   for (const auto& arm : arms) links += arm->linkCount(), motors += arm->heat().count();
   streams[kLinks] = {"links", linkColumns(), std::max(kNone, links * static_cast<uint64_t>(61 * seconds))};
   streams[kMotors] = {"motors", motorColumns(), std::max(kNone, motors * static_cast<uint64_t>(11 * seconds))};
+  streams[kMarks] = {"marks", markColumns(), kFewest};
   RowLayout& layout = streams[kTicks].layout;
   tickColumns(layout);
   for (size_t i = 0; i < arms.size(); ++i) addArm(layout, "arm" + std::to_string(i) + "_", arms[i]->info(), pushed);

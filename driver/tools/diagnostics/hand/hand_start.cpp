@@ -200,7 +200,8 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   const servo::WorldOptions options{.rate = scene.servo.rate,
                                     .probe_count = std::max<uint32_t>(static_cast<uint32_t>(tips.size()), 1),
                                     .measure = true,
-                                    .max_force = servo::maxForceOf(scene)};
+                                    .max_force = servo::maxForceOf(scene),
+                                    .keep_disabled = true};
   auto world = servo::World::build(scene, options, [](int, const std::string&, const std::string&) {});
   if (!world) return found.take();
   const bool placed = !tips.empty() && tips.size() == scene.devices.size();

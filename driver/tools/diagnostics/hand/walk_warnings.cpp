@@ -271,7 +271,9 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
     const bool silent = std::find(walk.silenced.begin(), walk.silenced.end(), true) != walk.silenced.end();
-    if (all_models && !silent && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+    const bool all_enabled =
+        std::all_of(scene.models.begin(), scene.models.end(), [](const scene::Model& m) { return m.enabled; });
+    if (all_models && all_enabled && !silent && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
       reportAway(scene, index, *hand, seen, world, warnings);
     return;
   }

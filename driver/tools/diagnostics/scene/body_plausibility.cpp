@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "diagnostics/scene/given_model.hpp"
 #include "diagnostics/scene/value_plausibility.hpp"
@@ -16,6 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kWeightless = 1e-3;  ///< [m/s^2] a weaker gravity counts as none
+constexpr std::string_view kPendulum = "org.hapticd.shape.pendulum";
 
 /// Warns of a body that its weight would move too far, because nothing holds it or its tether is too soft.
 void checkContactHold(const GivenModel& given) {
@@ -87,9 +89,10 @@ void checkRange(const GivenModel& given, const char* id) {
   const scene::Value* value = given.find(id);
   const std::string joint = given.choice("joint");
   if (value == nullptr || joint == "free") return;
+  const bool turns = joint == "hinge" || given.plugin().id == kPendulum;
   double most = std::abs(value->number);
   for (const double x : value->numbers) most = std::max(most, std::abs(x));
-  if (joint == "hinge" && most > kTurn)
+  if (turns && most > kTurn)
     return given.warn({id}, fmt::format("{0:g} rad is more than a whole turn; the value must be in rad: if you meant "
                                         "{0:g} degrees, write {1:.4g}",
                                         most, most * M_PI / 180));
@@ -227,7 +230,9 @@ void checkBody(const GivenModel& given) {
   checkFirstTouch(given);
   given.begin();
   if (given.choice("motion") == "dynamic" && given.plugin().indexOf("tether") >= 0) checkDynamic(given);
-  if (given.plugin().id != "org.hapticd.shape.pendulum") return;
+  if (given.plugin().id != kPendulum) return;
+  given.begin();
+  checkRange(given, "limits");
   for (const auto& judge : {&checkPendulumInertia, &checkHanging, &checkCreep}) {
     given.begin();
     judge(given);

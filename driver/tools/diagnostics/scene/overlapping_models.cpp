@@ -154,7 +154,7 @@ document::Problems overlappingModels(const scene::Scene& scene, const servo::Wor
   for (size_t second = 1; second < boxes.size(); ++second)
     for (size_t first = 0; first < second; ++first) {
       if (!boxes[first].intersects(boxes[second]) || inOneGroup(told, first, second)) continue;
-      if (areOfOneRow(scene, first, second)) continue;
+      if (areOfOneRow(scene, first, second) || !scene.models[first].enabled || !scene.models[second].enabled) continue;
       const double depth =
           std::max(depthIn(solid(second), solid(first), tests), depthIn(solid(first), solid(second), tests));
       if (depth <= kOverlap) continue;

@@ -133,6 +133,7 @@ document::Problems enclosedModels(const scene::Scene& scene, const servo::World&
   size_t tried = 0;
   for (size_t inner = 0; inner < scene.models.size(); ++inner)
     for (size_t outer = 0; outer < scene.models.size(); ++outer) {
+      if (!scene.models[inner].enabled || !scene.models[outer].enabled) continue;  // they are felt by turns
       const auto found = mayEnclose(scene, world, inner, outer);
       if (!found || tried++ >= kMost) continue;
       const double depth = depthIn(scene, *found);

@@ -44,7 +44,8 @@ std::string placeText(const scene::Model& model) {
 std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene) {
   std::map<std::string, std::vector<size_t>> by_place;
   for (size_t i = 0; i < scene.models.size(); ++i)
-    if (const std::string text = placeText(scene.models[i]); !text.empty()) by_place[text].push_back(i);
+    if (const std::string text = placeText(scene.models[i]); !text.empty() && scene.models[i].enabled)
+      by_place[text].push_back(i);
   std::vector<std::vector<size_t>> groups;
   for (auto& [text, models] : by_place)
     if (models.size() > 1) groups.push_back(std::move(models));

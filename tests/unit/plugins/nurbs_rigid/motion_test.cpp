@@ -276,6 +276,7 @@ double angleOf(const PluginUnderTest& plugin) {
 }
 
 TEST(Motion, ADoorIsPushedToItsStopFeltAsAWallThereAndClosesAgain) {
+  constexpr uint32_t kEnds = HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST;
   for (const double rate : {500.0, 1000.0, 4000.0, 10'000.0}) {
     PluginUnderTest plugin;
     makeDoor(plugin);
@@ -290,8 +291,10 @@ TEST(Motion, ADoorIsPushedToItsStopFeltAsAWallThereAndClosesAgain) {
     EXPECT_EQ(Vector3d(plugin.pose.angular), Vector3d::Zero());
     EXPECT_NEAR(plugin.force().norm(), 800 * 0.006, 1e-9) << "stiffness times depth, as of a wall that stands";
     EXPECT_NEAR(plugin.force().dot(open * Vector3d::UnitZ()), 4.8, 1e-9) << "along its normal";
+    EXPECT_EQ(plugin.contacts[0].flags & kEnds, HSP_OUT_AT_HIGHEST);
     for (int i = 0; i < 4 * ticks; ++i) plugin.tick({kFar});
     EXPECT_EQ(angleOf(plugin), 0) << "the spring closes it";
+    EXPECT_EQ(plugin.contacts[0].flags & kEnds, HSP_OUT_AT_LOWEST);
     EXPECT_EQ(Vector3d(plugin.pose.angular), Vector3d::Zero());
   }
 }

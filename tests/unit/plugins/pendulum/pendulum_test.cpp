@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "../plugin_under_test.hpp"
 
@@ -126,6 +128,81 @@ TEST(Pendulum, AResetAndAJumpForgetTheHand) {
     if (!jump) plugin.reset();
     plugin.tick({kFar}, {}, jump ? uint32_t{HSP_IN_JUMP} : 0u);
     EXPECT_EQ(plugin.pose.angular[2], 0);
+  }
+}
+
+uint32_t endOf(const PluginUnderTest& plugin) {
+  return plugin.contacts[0].flags & (HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST);
+}
+
+TEST(Pendulum, StandsAtTheEndStopAgainstWhichAHandPressesItAndComesBack) {
+  for (const double rate : {500.0, 1000.0, 4000.0}) {
+    PluginUnderTest plugin;
+    makeBall(plugin, 0.5, 0.05);
+    plugin.set("stiffness", 2000);
+    plugin.set("angle", -0.1);
+    plugin.set("limits", {-0.15, 0.3});
+    ASSERT_EQ(plugin.activate(1, rate), HSP_OK);
+    const auto ticks = static_cast<int>(2 * rate);
+    for (int i = 0; i < ticks; ++i) plugin.tick({{-0.08 + 0.11 * std::min(1.0, 1.5 * i / ticks), 0.005, 0}});
+    EXPECT_NEAR(angleOf(plugin), 0.3, 1e-12) << rate;
+    EXPECT_EQ(Vector3d(plugin.pose.angular), Vector3d::Zero());
+    EXPECT_EQ(endOf(plugin), HSP_OUT_AT_HIGHEST);
+    EXPECT_NEAR(plugin.force().norm(), 2000 * plugin.contacts[0].depth_m, 1e-9) << "as a wall that stands";
+    EXPECT_LT(plugin.force().x(), -1) << "against the hand";
+    double least = 1;
+    for (int i = 0; i < 20 * ticks; ++i) {
+      plugin.tick({kFar});
+      least = std::fmin(least, angleOf(plugin));
+      ASSERT_LE(angleOf(plugin), 0.3 + 1e-12);
+    }
+    EXPECT_NEAR(least, -0.15, 1e-12) << "it swings to the other stop";
+    EXPECT_NEAR(angleOf(plugin), 0, 1e-3) << "and comes to rest";
+    EXPECT_EQ(endOf(plugin), 0u);
+  }
+}
+
+TEST(Pendulum, AStopGivesNoEnergy) {
+  PluginUnderTest plugin;
+  makeBall(plugin, 0.5);
+  plugin.set("angle", 1.2);
+  plugin.set("limits", {-0.4, 1.2});
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  plugin.tick({kFar});
+  const double start = plugin.energy();
+  EXPECT_NEAR(start, 0.5 * 9.81 * 0.25 * (1 - std::cos(1.2)), 1e-12) << "above that of the lowest place";
+  double before = start;
+  for (int i = 0; i < 5000; ++i) {
+    plugin.tick({kFar});
+    ASSERT_LE(plugin.energy(), before + 1e-9 * start) << i;
+    before = plugin.energy();
+  }
+  EXPECT_NEAR(before, 0.5 * 9.81 * 0.25 * (1 - std::cos(0.4)), 1e-6) << "it fell from its stop without a rate";
+}
+
+TEST(Pendulum, RefusesEndStopsThatItDoesNotStartBetween) {
+  for (const auto& [limits, words] : {std::pair{std::array{0.1, 0.5}, "the pendulum starts at `angle`"},
+                                      std::pair{std::array{0.5, -0.5}, "greater value first"}}) {
+    PluginUnderTest plugin;
+    makeBall(plugin, 1);
+    plugin.set("limits", {limits[0], limits[1]});
+    EXPECT_LT(plugin.activate(), 0);
+    EXPECT_NE(plugin.log.find(words), std::string::npos) << plugin.log;
+  }
+}
+
+TEST(Pendulum, HasTheInertiaThatItIsGivenWithAndWithoutLengthOrWeight) {
+  for (const double length : {0.0, 0.1, 0.25}) {
+    PluginUnderTest plugin;
+    makeBall(plugin, 1);
+    plugin.set("length", length);
+    plugin.set("inertia", 0.08);
+    plugin.set("rate", 1);
+    ASSERT_EQ(plugin.activate(1, 1000, Vector3d::Zero()), HSP_OK);
+    plugin.tick({kFar});
+    EXPECT_NEAR(plugin.energy(), 0.5 * 0.08, 1e-12) << length;
+    for (int i = 0; i < 1000; ++i) plugin.tick({kFar});
+    EXPECT_NEAR(angleOf(plugin), 1, 1e-9);
   }
 }
 

@@ -6,8 +6,9 @@
     ./experiment.py soft.yaml hard.yaml --trials 20 --seed 7 --out session
 
 Enter begins a trial: the scene is loaded while the hand is outside of its models, and then felt for some seconds. The
-scenes may differ in anything but their devices. `trials.csv` has a row per trial with its first tick, by which the trial
-is found in the recording; `trial-001.csv` has the ticks. This program pushes on nobody: if it crashes, the last scene
+scenes may differ in anything but their devices. `trials.csv` has a row per trial with its first tick; `trial-001.csv` has
+the ticks. The recording has a mark where a trial begins and where it ends (`hapticd explain session.h5`, column `text` of
+`marks`). This program pushes on nobody: if it crashes, the last scene
 stays, and the daemon's limits hold. Ctrl-C ends it between two rows.
 """
 import argparse
@@ -36,7 +37,7 @@ random.Random(options.seed).shuffle(order)
 
 
 def present(h, scene):
-    """Loads a scene. Returns the number of the first row in which the hand may feel it."""
+    """Loads a scene. Returns when the hand may feel it."""
     h.ask(do="reload", file=os.path.abspath(scene))
     told = False
     while any(model.waits for model in h.models.values()):  # a model gives no force while a tip is inside it
@@ -44,15 +45,17 @@ def present(h, scene):
             print("draw the hand back, out of the model", flush=True)
         told = True
         time.sleep(0.02)
-    return h.streams["ticks"].written
 
 
-def felt(h, first):
-    """Returns the rows of a trial that began with this one."""
+def felt(h, name):
+    """Marks the begin and the end of a trial in the recording. Returns the rows of its ticks."""
+    first = h.mark(f"{name} begins")
     end = time.monotonic() + options.seconds
     while (left := end - time.monotonic()) > 0:
         time.sleep(left)
-    return h.streams["ticks"].read(first, h.streams["ticks"].written - first)[1]
+    last = h.mark(f"{name} ends")
+    h.wait(last)
+    return h.streams["ticks"].read(first, last - first + 1)[1]
 
 
 def write(number, scene, rows, table):
@@ -78,4 +81,5 @@ with h, open(os.path.join(options.out, "trials.csv"), "w", newline="", buffering
     trials.writerow(["trial", "scene", "tick", "ticks", "force_n", "depth_m", "valid"])
     for number, scene in enumerate(order, 1):
         input(f"trial {number} of {len(order)}: Enter ")
-        write(number, scene, felt(h, present(h, scene)), trials)
+        present(h, scene)
+        write(number, scene, felt(h, f"trial {number}"), trials)

@@ -21,6 +21,7 @@ from ._rows import Column, Stream
 from ._state import FAULTS, State
 
 CAME_OUT, WENT_IN = 2, 1  #: `code` of an event `click`, in rows of the stream `events`
+HIGHEST, LOWEST = 2, 1  #: `code` of an event `end_stop`
 
-__all__ = ["CAME_OUT", "FAULTS", "Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
-           "Parameter", "PoseLead", "Refused", "State", "Stream", "WENT_IN", "connect"]
+__all__ = ["CAME_OUT", "FAULTS", "Client", "Column", "Events", "ForceLead", "ForceThread", "HIGHEST", "HapticdError", "LOWEST", "Lead",
+           "Model", "NoForceWarning", "Parameter", "PoseLead", "Refused", "State", "Stream", "WENT_IN", "connect"]

@@ -210,6 +210,13 @@ class Client:
         """Clears a latched fault or a hold: the force ramps in."""
         self.ask(do="clear", **({"device": device} if device else {}))
 
+    def mark(self, text: str) -> int:
+        """Writes a text of at most 95 bytes into the recording, the black box and the events, such as "trial 7 begins".
+        Returns the number of the tick that has it."""
+        if not isinstance(text, str):
+            raise TypeError(f"mark() expects a text, got {text!r}")
+        return self.ask(do="mark", text=text)["tick"]
+
     def events(self, timeout: Optional[float] = None) -> "Events":
         """Returns the events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the
         event. It ends with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the

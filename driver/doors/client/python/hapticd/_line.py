@@ -45,13 +45,15 @@ class Line:
 
     def say(self, request: dict[str, Any]) -> None:
         try:
-            line = json.dumps(request, allow_nan=False, default=_plain)
+            line = json.dumps(request, allow_nan=False, default=_plain, ensure_ascii=False).encode()
+        except UnicodeEncodeError:  # the daemon takes no such line, and could not say whose answer its refusal is
+            raise ValueError(f"a text of the request has half a character of UTF-16, which UTF-8 cannot have: {request!a}") from None
         except ValueError:
             raise ValueError(f"a number of the request is not finite, expected finite numbers: {request}") from None
         if self.closed():
             raise HapticdError(CLOSED, "closed")
         try:
-            self._socket.sendall(line.encode() + b"\n")
+            self._socket.sendall(line + b"\n")
         except OSError as error:
             raise HapticdError(f"the daemon is gone: {error.strerror}", "gone") from None
 

@@ -26,6 +26,7 @@ _BLOCK = struct.Struct("<IIQ")
 _BLOCK_MAGIC = 0x4B4C4248
 _INDEX_NODE = 0xFFFFFFFF
 _CODES = {"f8": "d", "f4": "f", "u8": "Q", "u4": "I", "i4": "i"}
+_TEXT = "s"  # s96: UTF-8, filled up with zeros to 96 bytes
 
 
 def _whole(name: str, value: Any) -> int:
@@ -35,9 +36,21 @@ def _whole(name: str, value: Any) -> int:
         raise TypeError(f"{name}={value!r}: expected a whole number of rows, 0 or more") from None
 
 
+def _format(type_name: str) -> str:
+    """Returns the name that numpy has for a type. Its texts lose the zeros at their end."""
+    return type_name.upper() if type_name.startswith(_TEXT) else "<" + type_name
+
+
+def _value(type_name: str, data: bytearray, at: int) -> Any:
+    if type_name.startswith(_TEXT):  # bytes, as numpy gives them
+        return bytes(data[at:at + int(type_name[len(_TEXT):])]).rstrip(b"\0")
+    return struct.unpack_from("<" + _CODES[type_name], data, at)[0]
+
+
 @dataclass(frozen=True)
 class Column:
-    """One number of a row: its name, type (f8, f4, u8, u4, i4), place in the row in bytes, unit and meaning."""
+    """One value of a row: its name, type (f8, f4, u8, u4, i4; s96: UTF-8 of at most 95 bytes), place in the row in bytes,
+    unit and meaning."""
 
     name: str
     type: str
@@ -74,7 +87,7 @@ class Stream:
         self._row = type("Row", (Row,), {"places": Named("column", {c.name: i for i, c in enumerate(columns)})})
         self.dtype = None
         if numpy is not None:
-            self.dtype = numpy.dtype({"names": [c.name for c in columns], "formats": ["<" + c.type for c in columns],
+            self.dtype = numpy.dtype({"names": [c.name for c in columns], "formats": [_format(c.type) for c in columns],
                                       "offsets": [c.offset for c in columns], "itemsize": row_bytes})
 
     @property
@@ -120,7 +133,7 @@ class Stream:
     def _parsed(self, data: bytearray, count: int) -> Any:
         if numpy is not None:
             return numpy.frombuffer(data, self.dtype, count)
-        return Rows(self._row(struct.unpack_from("<" + _CODES[c.type], data, row * self.row_bytes + c.offset)[0]
+        return Rows(self._row(_value(c.type, data, row * self.row_bytes + c.offset)
                               for c in self.columns) for row in range(count))
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/** The list of what happened, newest first: orders, faults, contacts, clicks, and models and programs that came or
+/** The list of what happened, newest first: orders, faults, contacts, clicks, marks, and models and programs that came or
  * left. */
 import {clock, element, short} from './format.js';
 import {reader} from './rows.js';
@@ -33,6 +33,8 @@ const kEvents = {
   lost: {sort: 'order', text: (e) => kLost[e.code] ?? kLost[0]},
   refused: {sort: 'fault', text: (e) => `${e.value} records of the program that leads it were refused so far`},
   stalled: {sort: 'fault', text: (e) => `no tick came for ${short(e.value)} s`},
+  end_stop: {sort: 'contact', text: (e) => `came to its ${['', 'lowest', 'highest'][e.code] ?? ''} end`},
+  mark: {sort: 'mark', text: () => 'marked'}, // the stream `marks` has its text
   quarantined: {sort: 'fault', text: () => 'models were left out, because their plugin ended an earlier run'},
 };
 
@@ -46,6 +48,7 @@ export class Events {
     const columns = about.columns ?? {}, readers = (stream, names) => Object.fromEntries(names.map((n) => [n, reader(columns[stream] ?? [], n)]));
     this.read = readers('orders', ['tick', 'kind', 'target', 'value']);
     this.event = readers('events', ['t', 'kind', 'model', 'probe', 'code', 'value']);
+    this.mark = readers('marks', ['t', 'text']);
     this.kinds = about.events ?? [];
     this.told = 'events' in columns; // older recordings have no stream of events
     this.faults = [];
@@ -80,10 +83,16 @@ export class Events {
   events(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
       const e = Object.fromEntries(Object.entries(this.event).map(([name, read]) => [name, read(view, i * rowBytes)]));
-      const name = this.kinds[e.kind] ?? `event ${e.kind}`, said = kEvents[name] ?? {sort: 'order', text: () => name.replaceAll('_', ' ')};
+      const name = this.kinds[e.kind] ?? `event ${e.kind}`;
+      if (name === 'mark') continue; // marks() tells it
+      const said = kEvents[name] ?? {sort: 'order', text: () => name.replaceAll('_', ' ')};
       const whose = e.model >= 0 ? this.name(e.model) : this.devices[e.probe];
       this.add(e.t, name === 'fault' && e.code === kHeld ? 'order' : said.sort, `${whose ? `${whose}: ` : ''}${said.text(e)}`);
     }
+  }
+
+  marks(view, count, rowBytes) {
+    for (let i = 0; i < count; ++i) this.add(this.mark.t(view, i * rowBytes), 'mark', this.mark.text(view, i * rowBytes));
   }
 
   /** For a recording without a stream of events: finds events in the present rows, namely faults that began or ended

@@ -219,6 +219,7 @@ class Page {
     if (table.name === 'ticks') this.plots?.add(bytes, count, rowBytes);
     else if (table.name === 'orders') this.events.orders(bytes, count, rowBytes);
     else if (table.name === 'events') this.events.events(bytes, count, rowBytes);
+    else if (table.name === 'marks') this.events.marks(bytes, count, rowBytes);
     this.fresh = true;
   }
 

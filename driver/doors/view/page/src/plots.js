@@ -8,6 +8,7 @@ import {reader, vectorReader} from './rows.js';
 const kSeconds = 10;
 const kBuckets = 640; // number of intervals in kSeconds; each contains about 16 ticks at 1 kHz
 const kRedrawMs = 90;
+const kColours = {fault: '--bad', click: '--late', mark: '--depth'}; // of moments; others are faint
 
 /** The least and the greatest value of one quantity in each interval of time (bucket). */
 class Extremes {
@@ -86,7 +87,7 @@ class Plot {
     }, [[0, 1], [null, null], [null, null]], this.chartBox);
   }
 
-  /** Draws a dashed line at the limit, and a line at each mark (fault, order). */
+  /** Draws a dashed line at the limit, and a line at each moment (fault, order, mark of a program). */
   #marks(u) {
     const {ctx} = u, {left, top, width, height} = u.bbox;
     ctx.save();
@@ -104,8 +105,8 @@ class Plot {
     }
     for (const {t, kind} of this.plots.marks) {
       const x = u.valToPos(t, 'x', true);
-      ctx.strokeStyle = themeColor(kind === 'fault' ? '--bad' : kind === 'click' ? '--late' : '--faint');
-      ctx.globalAlpha = kind === 'fault' ? 0.9 : 0.45;
+      ctx.strokeStyle = themeColor(kColours[kind] ?? '--faint');
+      ctx.globalAlpha = kind === 'fault' || kind === 'mark' ? 0.9 : 0.45;
       ctx.beginPath();
       ctx.moveTo(x, top), ctx.lineTo(x, top + height);
       ctx.stroke();

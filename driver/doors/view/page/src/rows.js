@@ -8,6 +8,7 @@ const kReaders = {
   u8: (view, at) => Number(view.getBigUint64(at, true)),
   u4: (view, at) => view.getUint32(at, true),
   i4: (view, at) => view.getInt32(at, true),
+  s96: (view, at) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, 96)).replace(/\0.*/s, ''),
 };
 const kKeptSeconds = 11, kMostBytes = 24 << 20;
 const kQuaternion = ['w', 'x', 'y', 'z'];

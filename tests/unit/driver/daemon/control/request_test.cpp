@@ -17,7 +17,7 @@ TEST(Request, TakesWhatTheManualSays) {
         R"({"do":"clear","device":"arm"})", R"({"do":"geometry","model":"a"})",
         R"({"do":"geometry","model":"a","tolerance":0.001})", R"({"do":"geometry","model":"a","triangles":1000})",
         R"({"do":"vertices","model":"a"})", R"({"do":"vertices","model":"a","after":3})",
-        R"({"do":"feature","model":"a","number":7})"})
+        R"({"do":"feature","model":"a","number":7})", R"({"do":"mark","text":"trial 7 begins"})"})
     EXPECT_TRUE(parseRequest(line)) << line;
   const auto set = parseRequest(R"({"do":"set","model":"a","parameter":"k","value":600,"consent":true})");
   ASSERT_TRUE(set);
@@ -49,6 +49,9 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {"{", "JSON object"},
       {R"({"do":"dance"})", "expected one of status"},
       {R"({"do":1})", "expected one of"},
+      {R"({"do":"mark"})", "\"text\" is missing in \"mark\", expected 1 to 95 bytes of UTF-8"},
+      {R"({"do":"mark","text":7})", "\"text\": expected 1 to 95 bytes of UTF-8 in one line"},
+      {R"({"do":"mark","text":"a\u0000b"})", "\"text\": expected 1 to 95 bytes of UTF-8 in one line"},
       {R"({"do":"enable"})", "\"model\" is missing in \"enable\", expected the name of a model"},
       {R"({"do":"move","model":"a"})", "\"position\" is missing in \"move\", expected a list of 3 numbers [x, y, z]"},
       {R"({"do":"enable","model":""})", "expected the name of a model, 1 to 4096 bytes of text"},

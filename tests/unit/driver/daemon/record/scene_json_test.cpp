@@ -11,6 +11,8 @@ namespace {
 scene::Scene sceneWithEveryLimit() {
   scene::Scene scene;
   scene.servo.spin_us = 20;
+  scene.models.emplace_back().name = "wall";
+  scene.models[0].enabled = false;
   scene::Device& device = scene.devices.emplace_back();
   device.name = "arm";
   device.admittance = {2, 30};
@@ -33,6 +35,7 @@ TEST(SceneJson, ComesBackAsItWas) {
   ASSERT_TRUE(scene->devices[0].hd);
   EXPECT_EQ(scene->devices[0].hd->joints.at(0).sign, -1);
   EXPECT_EQ(scene->devices[0].hd->buttons.at(0), 2u);
+  EXPECT_FALSE(scene->models[0].enabled);
   EXPECT_FALSE(scene->clients.push);
   EXPECT_EQ(scene->clients.origin.y(), 2);
   EXPECT_EQ(scene->clients.frame, scene::ClientFrame::kDevice);
@@ -46,6 +49,7 @@ TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
   device.erase("hd");
   for (const char* key : {"answer_time", "push", "origin", "frame"}) json["clients"].erase(key);
   json["servo"].erase("spin_us");
+  json["models"][0].erase("enabled");
   const auto scene = sceneFromJson(json.dump());
   ASSERT_TRUE(scene) << scene.error();
   const scene::Limits& limits = scene->devices[0].limits;
@@ -58,6 +62,7 @@ TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
   EXPECT_FALSE(scene->servo.spin_us);
   EXPECT_FALSE(scene->devices[0].hd);
   EXPECT_TRUE(scene->clients.push);
+  EXPECT_TRUE(scene->models[0].enabled);
   EXPECT_EQ(scene->clients.frame, scene::ClientFrame::kWorld);
 }
 

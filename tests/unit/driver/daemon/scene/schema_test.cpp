@@ -46,6 +46,7 @@ TEST(Tables, DefaultsAreAcceptedByTheirOwnParsers) {
       Velocity velocity;
       Admittance admittance;
       Daemon daemon;
+      ModelText model;
       void* target = path.find("velocity.") != std::string::npos     ? static_cast<void*>(&velocity)
                      : path.find("limits.") != std::string::npos     ? static_cast<void*>(&limits)
                      : path.find("pose.") != std::string::npos       ? static_cast<void*>(&pose)
@@ -53,6 +54,7 @@ TEST(Tables, DefaultsAreAcceptedByTheirOwnParsers) {
                      : path.find("admittance.") != std::string::npos ? static_cast<void*>(&admittance)
                      : format.table == &kDaemonTable                 ? static_cast<void*>(&daemon)
                      : path.find("servo.") != std::string::npos      ? static_cast<void*>(&servo)
+                     : path.find("models.") != std::string::npos     ? static_cast<void*>(&model)
                                                                      : static_cast<void*>(anything);
       ASSERT_NE(target, static_cast<void*>(anything)) << path;
       Reader in("default", problems);
