@@ -68,7 +68,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   model.claims.moves_itself = moves_itself;
   model.dormant = keep_disabled && !described.enabled;
   model.enabled = !model.dormant;
-  if (model.dormant) model.guard.silence();  // so that its force fades in
+  if (model.dormant) model.guard.startAtZero();  // so that its force fades in
   return model;
 }
 
