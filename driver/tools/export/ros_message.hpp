@@ -25,8 +25,8 @@ std::string rosDefinition(const std::vector<Column>& columns);
 /// [any] True if rows of these columns have the layout of CDR. Otherwise no ROS reader can read them.
 bool liesAsCdr(const std::vector<Column>& columns);
 
-/// [any] Returns what follows the head in a message: the row itself, or, if its last column is a text, a copy of the row
-/// in which the text is a string of CDR. @param encoded memory for the copy
+/// [any] Returns what follows the head in a message: the row itself, or, if its last column is a text, a copy of the
+/// row in which the text is a string of CDR. @param encoded memory for the copy
 std::string_view cdrBody(const std::vector<Column>& columns, std::string_view row, std::string& encoded);
 
 }  // namespace hapticd::record
