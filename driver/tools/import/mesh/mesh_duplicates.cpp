@@ -2,8 +2,8 @@
 #include "mesh_import/mesh_duplicates.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "kernels/brep/model/groups.hpp"
 #include "mesh_import/mesh_edges.hpp"
 
 namespace hapticd::importing {
@@ -54,26 +54,12 @@ Doubles findDoubles(const std::vector<Corners>& corners) {
   return found;
 }
 
-/// Pairs that are joined by edges, as one sheet.
-class Sheets {
- public:
-  explicit Sheets(std::size_t pairs) : above_(pairs) { std::iota(above_.begin(), above_.end(), 0u); }
-  std::uint32_t of(std::uint32_t pair) {
-    while (above_[pair] != pair) pair = above_[pair] = above_[above_[pair]];
-    return pair;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { above_[of(a)] = of(b); }
-
- private:
-  std::vector<std::uint32_t> above_;
-};
-
 /// The edges of a sheet.
 struct Borders {
-  std::size_t outer = 0;     ///< with triangles of one pair alone
-  std::size_t attached = 0;  ///< with other triangles as well
-  std::size_t odd_with = 0,
-              odd_without = 0;  ///< edges that have not two triangles if one side of the sheet is kept, or none
+  std::size_t outer = 0;        ///< with triangles of one pair alone
+  std::size_t attached = 0;     ///< with other triangles as well
+  std::size_t odd_with = 0;     ///< with more or fewer than two triangles, if one side of the sheet is kept
+  std::size_t odd_without = 0;  ///< the same, if both sides are left out
 };
 
 void count(Borders& borders, std::size_t triangles, std::size_t pairs) {
@@ -106,17 +92,17 @@ void eachEdge(const std::vector<MeshEdge>& edges, const Doubles& doubles, const 
 /// Returns for each pair whether both of its triangles are left out.
 std::vector<char> emptyPairs(const std::vector<Corners>& corners, const Doubles& doubles, Flange flange) {
   const std::vector<MeshEdge> edges = meshEdges(corners);
-  Sheets sheets(doubles.backs.size());
+  brep::Groups sheets(doubles.backs.size());
   eachEdge(edges, doubles, [&](const std::vector<std::uint32_t>& pairs, std::size_t) {
     for (const std::uint32_t pair : pairs) sheets.join(pair, pairs.front());
   });
   std::vector<Borders> borders(doubles.backs.size());
   eachEdge(edges, doubles, [&](const std::vector<std::uint32_t>& pairs, std::size_t triangles) {
-    count(borders[sheets.of(pairs.front())], triangles, pairs.size());
+    count(borders[sheets.rootOf(pairs.front())], triangles, pairs.size());
   });
   std::vector<char> empty(doubles.backs.size(), 0);
   for (std::uint32_t pair = 0; pair < empty.size(); ++pair) {
-    const Borders& b = borders[sheets.of(pair)];
+    const Borders& b = borders[sheets.rootOf(pair)];
     const bool stays = b.attached == 0 || (b.outer > 0 && flange == Flange::kKeepOneSide);
     empty[pair] = static_cast<char>(!stays && b.odd_without < b.odd_with);
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "kernels/brep/model/groups.hpp"
 #include "kernels/brep/model/narrow_triangles.hpp"
 #include "kernels/brep/model/topology.hpp"
 #include "kernels/contact/edge_rule.hpp"
@@ -28,20 +28,6 @@ double angleAt(const Part& part, const Triangle& t, std::size_t corner) {
   const Vector3d c = vec(part.points[t.corner[(corner + 2) % 3]]) - a;
   return std::atan2(b.cross(c).norm(), b.dot(c));
 }
-
-/// Sets of corners that share one normal, as a union-find structure with path halving.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t rootOf(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[rootOf(a)] = rootOf(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Returns smooth_angle [rad] of the body of each triangle.
 std::vector<float> anglesOf(const Part& part) {

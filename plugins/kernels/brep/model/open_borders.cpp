@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include "kernels/brep/geometry/geometry.hpp"
+#include "kernels/brep/model/groups.hpp"
 
 namespace hapticd::brep {
 namespace {
@@ -17,20 +17,20 @@ namespace {
 class Chains {
  public:
   /// @param ends number of points or vertices at which edges can end
-  explicit Chains(std::size_t ends) : root_(ends) { std::iota(root_.begin(), root_.end(), 0u); }
+  explicit Chains(std::size_t ends) : joined_(ends) {}
 
   /// Adds an edge. An end of kNone is that of an edge that is closed in itself.
   void add(std::uint32_t from, std::uint32_t to, std::uint32_t body, const Eigen::AlignedBox3d& box) {
-    if (from == kNone) from = newEnd();
+    if (from == kNone) from = joined_.add();
     if (to == kNone) to = from;
-    root_[rootOf(from)] = rootOf(to);
+    joined_.join(from, to);
     edges_.push_back({from, {1, body, box}});
   }
 
   std::vector<OpenBorder> borders() {
     std::map<std::uint32_t, OpenBorder> of_root;
     for (const auto& [end, edge] : edges_) {
-      const auto [known, is_new] = of_root.try_emplace(rootOf(end), edge);
+      const auto [known, is_new] = of_root.try_emplace(joined_.rootOf(end), edge);
       if (is_new) continue;
       known->second.edges += 1;
       known->second.box.extend(edge.box);
@@ -44,16 +44,7 @@ class Chains {
   }
 
  private:
-  std::uint32_t newEnd() {
-    root_.push_back(static_cast<std::uint32_t>(root_.size()));
-    return root_.back();
-  }
-  std::uint32_t rootOf(std::uint32_t end) {
-    while (root_[end] != end) end = root_[end] = root_[root_[end]];
-    return end;
-  }
-
-  std::vector<std::uint32_t> root_;
+  Groups joined_;  ///< the ends
   std::vector<std::pair<std::uint32_t, OpenBorder>> edges_;
 };
 
