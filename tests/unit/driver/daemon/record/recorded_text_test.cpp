@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "output_of.hpp"
 #include "record/recording.hpp"
 #include "record/recording_file.hpp"
 
@@ -17,13 +18,8 @@ namespace {
 
 /// Returns what an HDF5 library that is not ours reads as the text of each row of `marks`.
 std::string textsByPython(const std::string& file) {
-  const std::string command = "/usr/bin/python3 -c 'import h5py; print([t.decode() for t in h5py.File(\"" + file +
-                              "\")[\"marks\"][\"text\"]])'";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::string text;
-  char buffer[256];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
-  return pclose(pipe) == 0 ? text : "failed: " + text;
+  return outputOf("/usr/bin/python3 -c 'import h5py; print([t.decode() for t in h5py.File(\"" + file +
+                  "\")[\"marks\"][\"text\"]])'");
 }
 
 TEST(RecordingFile, GivesBackTexts) {

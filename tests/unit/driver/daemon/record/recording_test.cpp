@@ -18,6 +18,7 @@
 #include <string>
 #include <thread>
 
+#include "output_of.hpp"
 #include "record/flight_ring.hpp"
 #include "record/recording_file.hpp"
 
@@ -86,13 +87,7 @@ void write(RecordingFile& file, uint64_t from, uint64_t count, uint64_t piece) {
 
 /// What an HDF5 library that is not ours reads: "rows first-tick last-tick sum-of-x events"; "" where there is none.
 std::string readByPython(const std::string& file) {
-  const std::string command =
-      "/usr/bin/python3 " HAPTICD_SOURCE_DIR "/tests/unit/driver/daemon/record/read_by_h5py.py " + file;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::string text;
-  char buffer[256];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
-  return pclose(pipe) == 0 ? text : "failed: " + text;
+  return outputOf("/usr/bin/python3 " HAPTICD_SOURCE_DIR "/tests/unit/driver/daemon/record/read_by_h5py.py " + file);
 }
 
 TEST(RecordingFile, GivesBackEveryRowWhateverTheSizeOfChunksAndPieces) {
