@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "hapticd/client.h"
 #include "record/histogram.hpp"
 #include "status/slot.hpp"
 
@@ -76,6 +77,12 @@ struct ModelStatus {
   /// at_end: HAPTICD_LOWEST or HAPTICD_HIGHEST if its joint stands at that end of its range, else 0.
   uint32_t waits = 0, at_end = 0;
 };
+
+/// [any] Returns the name of an end of a joint's range, HAPTICD_LOWEST or HAPTICD_HIGHEST; "" for 0.
+constexpr const char* nameOfEnd(uint32_t end) {
+  if (end == 0) return "";
+  return end == HAPTICD_LOWEST ? "lowest" : "highest";
+}
 
 /// Counts the ticks since a model was added, by its foot point. nearest: the point is proved to be the nearest. held: a
 /// held contact keeps the point, although another point is nearer. degraded: the answer was degraded, so the point is

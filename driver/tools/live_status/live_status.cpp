@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "hapticd/client.h"
 #include "servo/safety/limiter.hpp"
 #include "session/messages/silence_reason.hpp"
 
@@ -40,8 +39,7 @@ ModelLine modelLine(const status::Page& page, uint32_t i, const status::Name& na
 }  // namespace
 
 std::string ModelLine::end() const {
-  if (now.at_end == 0) return "";
-  return now.at_end == HAPTICD_LOWEST ? "lowest" : "highest";
+  return status::nameOfEnd(now.at_end);
 }
 
 double ArmLine::force() const {

@@ -115,7 +115,7 @@ status::ModelStatus nowOf(const Session& session, uint32_t place) {
 
 /// Returns at which end of its range a joint stands, or null.
 Json endJson(uint32_t at_end) {
-  return at_end == 0 ? Json() : Json(at_end == HAPTICD_LOWEST ? "lowest" : "highest");
+  return at_end == 0 ? Json() : Json(status::nameOfEnd(at_end));
 }
 
 Json modelJson(const Session& session, uint32_t place) {

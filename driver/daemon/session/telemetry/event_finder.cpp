@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "status/page.hpp"
+
 namespace hapticd::servo {
 
 namespace {
@@ -114,9 +116,7 @@ void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP
 void EventFinder::findEnd(double t, int32_t number, const ModelState& model, ModelNote& note) noexcept HSP_RT {
   const bool known = std::exchange(note.seen, true);
   if (model.at_end == 0) return;
-  if (known && t - note.at_end >= kFreeFor)
-    add(HAPTICD_END_STOP, number, -1,
-        (model.at_end & HSP_OUT_AT_LOWEST) != 0 ? uint32_t{HAPTICD_LOWEST} : uint32_t{HAPTICD_HIGHEST}, 0);
+  if (known && t - note.at_end >= kFreeFor) add(HAPTICD_END_STOP, number, -1, endOf(model), 0);
   note.at_end = t;
 }
 
@@ -164,9 +164,13 @@ const char* directionOfClick(const hapticd_event& event) {
   return event.code == HAPTICD_WENT_IN ? "in" : "out";
 }
 
+uint32_t endOf(const ModelState& model) noexcept HSP_RT {
+  if (model.at_end == 0) return 0;
+  return (model.at_end & HSP_OUT_AT_LOWEST) != 0 ? uint32_t{HAPTICD_LOWEST} : uint32_t{HAPTICD_HIGHEST};
+}
+
 const char* endOf(const hapticd_event& event) {
-  if (event.kind != HAPTICD_END_STOP) return "";
-  return event.code == HAPTICD_LOWEST ? "lowest" : "highest";
+  return event.kind == HAPTICD_END_STOP ? status::nameOfEnd(event.code) : "";
 }
 
 const char* nameOfEvent(uint32_t kind) {

@@ -83,6 +83,9 @@ const char* whyRefused(const hapticd_event& event);
 /// [main] Returns "in" or "out" for an event HAPTICD_CLICK whose direction is known; "" for other events.
 const char* directionOfClick(const hapticd_event& event);
 
+/// [rt] Returns HAPTICD_LOWEST or HAPTICD_HIGHEST if the joint of a model stands at that end of its range; else 0.
+uint32_t endOf(const ModelState& model) noexcept HSP_RT;
+
 /// [main] Returns "lowest" or "highest" for an event HAPTICD_END_STOP; "" for other events.
 const char* endOf(const hapticd_event& event);
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "hapticd/client.h"
+#include "session/telemetry/event_finder.hpp"
 
 namespace hapticd::servo {
 
@@ -104,8 +104,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
     now.trouble = static_cast<uint32_t>(model.guard.fault());
     now.failed_status = model.failed_status;
     now.waits = model.until_free && now.depth > 0 ? 1 : 0;  // until_free alone is also true before anything was found
-    if (model.at_end != 0)
-      now.at_end = (model.at_end & HSP_OUT_AT_LOWEST) != 0 ? uint32_t{HAPTICD_LOWEST} : uint32_t{HAPTICD_HIGHEST};
+    now.at_end = endOf(model);
     page.model[place].now.write(now);
     if (place < books.size())
       page.feet[place].write({books[place].nearestFeet(), books[place].heldFeet(), books[place].degradedFeet()});
