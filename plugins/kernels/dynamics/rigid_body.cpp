@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernels/dynamics/contact_step.hpp"
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/oscillator.hpp"
-#include "kernels/dynamics/positive_definite.hpp"
 
 namespace hapticd::dynamics {
 namespace {
@@ -96,15 +96,6 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
 
 namespace {
 
-/// Returns the matrix that maps (velocity of the centre, angular velocity) to the velocity of a point. Its transpose
-/// maps a force at the point to a wrench.
-Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
-  Eigen::Matrix<double, 3, 6> rows;
-  rows << Matrix3d::Identity(),
-      Matrix3d{{0, lever.z(), -lever.y()}, {-lever.z(), 0, lever.x()}, {lever.y(), -lever.x(), 0}};
-  return rows;
-}
-
 /// Returns the torsional stiffness [N m/rad] of a contact whose normal turns with the body, and which turns the body
 /// back to face the probe. If the contact would turn the body over instead (a press from behind the centre), the
 /// stiffness is 0.
@@ -115,114 +106,72 @@ Matrix3d facing(const PredictedContact& press, const Vector3d& lever) noexcept {
 
 }  // namespace
 
-/// Returns mass and inertia, plus the resistance of springs and drag to a change of velocity within the step.
-RigidBody::Matrix6d RigidBody::ownResistance(double dt) const noexcept {
-  Matrix6d own = Matrix6d::Zero();
-  own.topLeftCorner<3, 3>().diagonal().setConstant(law_.mass + dt * law_.damping + dt * dt * law_.tether);
+/// Returns weight, drag and spring on the centre of mass [N], as they are after dt [s] if it keeps its velocity.
+Vector3d RigidBody::ownForce(double dt) const noexcept {
+  return law_.mass * gravity_ - law_.damping * v_ - law_.tether * (x_ - anchor_ + dt * v_);
+}
+
+Balance<6> RigidBody::own(const FreeMotion&, double dt) const noexcept {
+  Balance<6> own;
   const Matrix3d axes = turn_.matrix();
-  own.bottomRightCorner<3, 3>() = axes * principal_.asDiagonal() * axes.transpose();
-  own.bottomRightCorner<3, 3>().diagonal().array() += dt * law_.angular_damping;
-  if (law_.joint == Joint::kHinge && law_.angular_tether > 0)
-    own.bottomRightCorner<3, 3>() += dt * dt * law_.angular_tether * axis_world_ * axis_world_.transpose();
+  own.resistance.topLeftCorner<3, 3>().diagonal().setConstant(law_.mass + dt * law_.damping + dt * dt * law_.tether);
+  own.resistance.bottomRightCorner<3, 3>() = axes * principal_.asDiagonal() * axes.transpose();
+  own.resistance.bottomRightCorner<3, 3>().diagonal().array() += dt * law_.angular_damping;
+  own.impulse << ownForce(dt), -law_.angular_damping * angular();
+  own.impulse *= dt;
   return own;
 }
 
-RigidBody::Vector6d RigidBody::ownImpulse(double dt) const noexcept {
-  Vector6d impulse;
-  impulse << law_.mass * gravity_ - law_.damping * v_ - law_.tether * (x_ - anchor_ + dt * v_),
-      -law_.angular_damping * angular();
-  if (law_.joint == Joint::kHinge && law_.angular_tether > 0)
-    impulse.tail<3>() -= law_.angular_tether * (hinge_angle_ + dt * hinge_rate_ - law_.rest) * axis_world_;
-  return dt * impulse;
-}
-
-/// Returns the change of velocity under an impulse that the joint allows.
-RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept {
-  if (law_.joint == Joint::kFree) return solvePositiveDefinite<6>(resisting, impulse);
-  Vector6d free;
-  if (law_.joint == Joint::kHinge) {
-    free << axis_world_.cross(x_ - pivot_world_), axis_world_;
-  } else {
-    free << axis_world_, Vector3d::Zero();
+Balance<1> RigidBody::own(const JointMotion& joint, double dt) const noexcept {
+  const Vector3d way = joint.at(x_);
+  double resistance = jointInertia() + dt * (law_.damping + dt * law_.tether) * way.squaredNorm();
+  double force = way.dot(ownForce(dt));
+  if (joint.turns) {
+    resistance += dt * (law_.angular_damping + dt * law_.angular_tether);
+    force -= law_.angular_damping * hinge_rate_ + law_.angular_tether * (hinge_angle_ + dt * hinge_rate_ - law_.rest);
   }
-  return free * (free.dot(impulse) / free.dot(resisting * free));
+  return {Eigen::Matrix<double, 1, 1>(resistance), Vector1d(dt * force)};
 }
 
-/// Returns the change of velocity in a step under those contacts that act, with forces that follow it linearly.
-template <class Acts>
-RigidBody::Vector6d RigidBody::linearChange(const Matrix6d& own, const Vector6d& own_impulse,
-                                            std::span<const PredictedContact> presses, double dt,
-                                            const Acts& acts) const noexcept {
-  Matrix6d resisting = own;
-  Vector6d impulse = own_impulse;
+template <class Motion>
+void RigidBody::stepUnder(std::span<const PredictedContact> presses, const Motion& motion, double dt) noexcept {
+  auto balance = own(motion, dt);
   for (const PredictedContact& press : presses) {
-    if (!acts(press)) continue;
-    const Eigen::Matrix<double, 3, 6> rows = pointRows(press.point - x_);
-    resisting += dt * rows.transpose() * press.give * rows;
-    impulse += dt * rows.transpose() * press.force;
+    // also if the contact does not act in the end: whether it acts must not depend on the resistance that it adds
+    const Matrix3d back = dt * dt * facing(press, press.point - x_);
+    motion.addTurn(balance, back, -back * angular());
   }
-  return changeUnder(resisting, impulse);
-}
-
-/// Returns true if a contact pushes the body at the end of the step, when the body's velocity has changed.
-bool RigidBody::pushesAfter(const PredictedContact& press, const Vector6d& change) const noexcept {
-  return press.outward.dot(press.force - press.give * (pointRows(press.point - x_) * change)) < 0;
-}
-
-/// Returns the change of velocity in a step. Only contacts that push at the end of the step act in it, and which do
-/// depends on the motion that they cause, so the step is solved until the same contacts push. If forces of one solution
-/// acted on a body that others move, a light body would be thrown ever faster (test TurningContact.*).
-RigidBody::Vector6d RigidBody::contactChange(const Matrix6d& own, const Vector6d& own_impulse,
-                                             std::span<const PredictedContact> presses, double dt) const noexcept {
-  constexpr int kRounds = 4;  // bounds the time of a step
-  const auto grips = [](const PredictedContact& press) { return !press.lets_go; };
-  Vector6d change = linearChange(own, own_impulse, presses, dt, grips);
-  const auto settled_for = [&](const auto& acted) {
-    return std::all_of(presses.begin(), presses.end(),
-                       [&](const PredictedContact& press) { return acted(press) == pushesAfter(press, change); });
-  };
-  bool settled = settled_for(grips);
-  for (int round = 0; round < kRounds && !settled; ++round) {
-    const auto acts = [this, former = change](const PredictedContact& press) { return pushesAfter(press, former); };
-    change = linearChange(own, own_impulse, presses, dt, acts);
-    settled = settled_for(acts);
-  }
-  return change;
+  const ContactStep<Motion> step(motion, balance, presses, dt);
+  const auto change = step.change();
+  step.touched(change) && change.allFinite() ? drift(change, dt) : this->step(Vector3d::Zero(), Vector3d::Zero(), dt);
 }
 
 void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
   if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
-  Matrix6d own = ownResistance(dt);
-  Vector6d own_impulse = ownImpulse(dt);
-  for (const PredictedContact& press : presses) {
-    // also if the contact does not act in the end: whether it acts must not depend on the resistance that it adds
-    const Matrix3d back = dt * dt * facing(press, press.point - x_);
-    own.bottomRightCorner<3, 3>() += back;
-    own_impulse.tail<3>() -= back * angular();
-  }
-  const Vector6d change = contactChange(own, own_impulse, presses, dt);
-  const bool touched = std::any_of(presses.begin(), presses.end(), [&](const PredictedContact& press) {
-    return pushesAfter(press, Vector6d::Zero()) || pushesAfter(press, change);
-  });
-  touched ? drift(change, dt) : step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  if (law_.joint == Joint::kFree) return stepUnder(presses, FreeMotion{x_}, dt);
+  stepUnder(presses, JointMotion{law_.joint == Joint::kHinge, axis_world_, pivot_world_}, dt);
 }
 
 /// Makes the second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with
 /// this velocity. So a body that rests on a probe has no velocity.
 void RigidBody::drift(const Vector6d& change, double dt) noexcept {
-  if (!change.allFinite()) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
-  if (law_.joint == Joint::kHinge) {
-    hinge_rate_ += axis_world_.dot(change.tail<3>());
-    return poseHinge(hinge_angle_ + dt * hinge_rate_);
-  }
   v_ += change.head<3>();
   x_ += dt * v_;
-  if (law_.joint == Joint::kSlider) return stopSlider();
   const Matrix3d axes = turn_.matrix();
   l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
   // Backward Euler is of first order, so a more accurate turn would only cost time.
   turn_.turnBody(top_.roughBodyTurn(turn_.quaternion().conjugate() * l_, dt));
   turn_.turnWorld(dt * top_.worldRate() * l_);
+}
+
+void RigidBody::drift(const Vector1d& change, double dt) noexcept {
+  if (law_.joint == Joint::kHinge) {
+    hinge_rate_ += change.value();
+    return poseHinge(hinge_angle_ + dt * hinge_rate_);
+  }
+  v_ += change.value() * axis_world_;
+  x_ += dt * v_;
+  stopSlider();
 }
 
 Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {

@@ -14,6 +14,11 @@
 
 namespace hapticd::dynamics {
 
+template <int N>
+struct Balance;
+struct FreeMotion;
+struct JointMotion;
+
 enum class Joint {
   kFree,
   kHinge,  ///< turns about an axis through a pivot
@@ -106,18 +111,15 @@ class RigidBody {
   void poseHinge(double angle) noexcept;
   void spin(double dt) noexcept;
   void stepHinge(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
+  using Vector1d = Eigen::Matrix<double, 1, 1>;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;
-  Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;
-  template <class Acts>
-  Vector6d linearChange(const Matrix6d& own, const Vector6d& own_impulse, std::span<const PredictedContact> presses,
-                        double dt, const Acts& acts) const noexcept;
-  Vector6d contactChange(const Matrix6d& own, const Vector6d& own_impulse, std::span<const PredictedContact> presses,
-                         double dt) const noexcept;
-  bool pushesAfter(const PredictedContact& press, const Vector6d& change) const noexcept;
-  Matrix6d ownResistance(double dt) const noexcept;
-  Vector6d ownImpulse(double dt) const noexcept;
+  Eigen::Vector3d ownForce(double dt) const noexcept;
+  Balance<6> own(const FreeMotion& motion, double dt) const noexcept;
+  Balance<1> own(const JointMotion& joint, double dt) const noexcept;
+  template <class Motion>
+  void stepUnder(std::span<const PredictedContact> presses, const Motion& motion, double dt) noexcept;
   void drift(const Vector6d& change, double dt) noexcept;
+  void drift(const Vector1d& change, double dt) noexcept;
 
   RigidBodyLaw law_;
   Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;
