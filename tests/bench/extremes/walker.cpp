@@ -19,7 +19,7 @@ struct Walker : Device {
   static constexpr DeviceInfo kInfo{"org.hapticd.test.walker", "walker", "1.0.0", "MIT", "A test arm on a path."};
   static constexpr auto fields() {
     using F = Fields<Walker>;
-    return std::array{F::path("path", &Walker::file, "CSV file t,x,y,z (s, m); a row a tick.")};
+    return std::array{F::path("path", &Walker::file, "CSV file t,x,y,z (s, m); one row per tick.")};
   }
 
   void open(hdv_info& info) {
