@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "kernels/brep/model/topology.hpp"
@@ -200,6 +201,8 @@ void addTriangles(const brep::Model& model, const brep::Placement& place, const 
   }
 }
 
+constexpr std::uint32_t kOpaque = 0xff000000u;
+
 /// Returns the colour of all that has none of its own at a place.
 std::uint32_t colourOf(const brep::Part& part, const brep::Placement& place) {
   const std::uint32_t own = part.instances[place.instance].colour;
@@ -208,8 +211,19 @@ std::uint32_t colourOf(const brep::Part& part, const brep::Placement& place) {
 
 /// Gives the vertices that were added last a colour. The alpha of a CAD file is left out: what can be felt is opaque.
 void paint(std::uint32_t colour, Mesh& mesh) {
-  constexpr std::uint32_t kOpaque = 0xff000000u;
   mesh.colours.resize(mesh.xyz.size() / 3, colour != 0 ? colour | kOpaque : 0);
+}
+
+/// Gives the corners of the triangles that were added last their own colours. The whole mesh has the colour of the
+/// place if none of its triangles has one.
+void paintTriangles(const brep::Part& part, const brep::Body& body, Mesh& mesh) {
+  if (part.colours.empty()) return;
+  const std::span own = std::span(part.colours).subspan(body.first_triangle, body.triangle_count);
+  if (std::all_of(own.begin(), own.end(),
+                  [](const auto& colours) { return colours.corner == decltype(colours.corner){}; }))
+    return;
+  for (const brep::CornerColours& colours : own)
+    for (const std::uint32_t word : colours.corner) mesh.colours.push_back(word != 0 ? word | kOpaque : 0);
 }
 
 }  // namespace
@@ -230,6 +244,7 @@ Mesh tessellate(const brep::Model& model, double chord_error) {
       paint(own != 0 ? own : colour, mesh);
     }
     addTriangles(model, place, body, mesh);
+    paintTriangles(model.part(), body, mesh);
     paint(colour, mesh);
   }
   if (std::all_of(mesh.colours.begin(), mesh.colours.end(), [](std::uint32_t colour) { return colour == 0; }))

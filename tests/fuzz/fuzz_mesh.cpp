@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// Fuzzes triangle meshes (OBJ, STL, PLY): the reader, its repairs, and some ticks with the part that it makes. Each
-/// such part must pass the checks of part files. The first byte of the input chooses the format.
+/// such part must pass the checks of part files. The first byte of the input chooses the format. What follows the
+/// byte 1e is the file of materials of an OBJ file.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
+#include <string_view>
 
 #include "kernels/brep/contact/tracer.hpp"
 #include "kernels/part/file.hpp"
@@ -37,7 +40,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr const char* kNames[] = {"fuzz.obj", "fuzz.stl", "fuzz.ply"};
   constexpr double kSmooth = 0.5;
   if (size == 0) return 0;
-  const auto mesh = importing::parseMesh({reinterpret_cast<const char*>(data) + 1, size - 1}, kNames[data[0] % 3]);
+  const std::string_view input(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const std::size_t end = data[0] % 3 == 0 ? input.find('\x1e') : std::string_view::npos;
+  const auto materials = [&](const std::string& name) -> Result<std::string> {
+    for (const std::filesystem::path& step : std::filesystem::path(name)) need(step != ".." && step != "/");
+    if (end == std::string_view::npos) return Error{"is not there"};
+    return std::string(input.substr(end + 1));
+  };
+  const auto mesh = importing::parseMesh(input.substr(0, end), kNames[data[0] % 3], materials);
   if (!mesh) return 0;
   try {
     importing::MeshReport report;

@@ -22,25 +22,46 @@ void need(bool good) {
   if (!good) std::abort();
 }
 
+/// A triangle with colours, felt from both sides.
+Part colouredTriangle() {
+  Part part;
+  brep::Body body;
+  body.kind = brep::BodyKind::kMesh;
+  body.point_count = 3, body.triangle_count = 1;
+  part.points = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}};
+  part.triangles = {{{0, 1, 2}, {brep::kNone, brep::kNone, brep::kNone}}};
+  part.colours = {{{0xff0000ffu, 0, 0xffff0000u}}};
+  part.bodies = {body};
+  brep::Instance instance;
+  instance.body = 0;
+  part.instances = {instance};
+  return part;
+}
+
 const std::vector<Part>& samples() {
-  static const std::vector<Part> parts{
-      brep::samples::cappedCylinder(10, 20), brep::samples::bracket(),    brep::samples::sphere(15),
-      brep::samples::cone(10, 20),           brep::samples::torus(20, 6), brep::samples::plate(3, 2, 1.5, 5, 3)};
+  static const std::vector<Part> parts{brep::samples::cappedCylinder(10, 20),
+                                       brep::samples::bracket(),
+                                       brep::samples::sphere(15),
+                                       brep::samples::cone(10, 20),
+                                       brep::samples::torus(20, 6),
+                                       brep::samples::plate(3, 2, 1.5, 5, 3),
+                                       colouredTriangle()};
   return parts;
 }
 
 /// Returns a sample part with spoilt words. Each change takes six bytes of the input: section, place and four bytes to
 /// write there.
 Part spoilt(std::span<const std::uint8_t> input) {
+  constexpr int kSections = 14;
   Part part = samples()[input[0] % samples().size()];
   for (std::size_t at = 1; at + 6 <= input.size(); at += 6) {
     std::uint32_t value = 0;
     std::memcpy(&value, input.data() + at + 2, sizeof value);
     int section = 0;
     forEachSection(part, [&](const char*, auto& records) {
-      if (section++ != input[at] % 13 || records.empty()) return;
+      if (section++ != input[at] % kSections || records.empty()) return;
       const std::size_t words = records.size() * sizeof records[0] / 4;
-      const std::size_t word = input[at + 1] * words / 256 + (input[at] / 13) % (words / 256 + 1);
+      const std::size_t word = input[at + 1] * words / 256 + (input[at] / kSections) % (words / 256 + 1);
       std::memcpy(reinterpret_cast<char*>(records.data()) + 4 * (word % words), &value, sizeof value);
     });
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/counted.hpp"
 #include "base/regular_file.hpp"
 #include "cli/support/command.hpp"
 #include "document/json_text.hpp"
@@ -15,6 +16,7 @@ namespace hapticd::cli {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
+constexpr std::size_t kMaxMaterialBytes = std::size_t{16} << 20;  ///< a material takes some 200 bytes
 // The limits and the measure, the diagonal of the box, are those of the warnings of `check`.
 constexpr double kTooLarge = 5;     ///< [m] a model larger than this was probably given in millimetres
 constexpr double kTooSmall = 1e-3;  ///< [m] a smaller part was probably scaled twice: no fingertip feels its form
@@ -41,6 +43,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   const nlohmann::ordered_json report = {{"part", out},
                                          {"triangles", r.triangles},
                                          {"points", r.points},
+                                         {"coloured_triangles", r.coloured},
                                          {"shells", r.shells},
                                          {"crossing_triangles", r.crossings.pairs},
                                          {"overlapping_triangles", r.overlaps.pairs},
@@ -99,6 +102,9 @@ void print(const importing::MeshReport& r, const std::string& out) {
   for (const importing::MeshBody& body : r.bodies)
     std::printf("  body '%s': %zu triangle%s, %s\n", body.name.c_str(), body.triangles, body.triangles == 1 ? "" : "s",
                 body.closed ? "closed" : "open");
+  if (r.coloured > 0)
+    std::printf("  colours: %s\n",
+                r.coloured == r.triangles ? "of all triangles" : counted(r.coloured, "triangle").c_str());
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
   warnOfSize(out, r.size.norm());
 }
@@ -136,7 +142,10 @@ int importMesh(const MeshImport& options) {
                                "soft body (.ma, .yaml) add --medial");
   const auto bytes = readRegular(options.file, kMaxMeshBytes);
   if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
-  auto mesh = importing::parseMesh(*bytes, options.file);
+  const std::filesystem::path folder = std::filesystem::path(options.file).parent_path();
+  auto mesh = importing::parseMesh(*bytes, options.file, [&](const std::string& name) {
+    return readRegular((folder / name).string(), kMaxMaterialBytes);
+  });
   if (!mesh) return failLines(kBadInput, mesh.error());
   const importing::Placement& placement = options.placement;
   const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';

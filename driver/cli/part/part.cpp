@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "base/counted.hpp"
 #include "base/regular_file.hpp"
@@ -41,6 +42,14 @@ Json countsOf(const std::map<std::string, std::size_t>& counts) {
   return json;
 }
 
+std::size_t colouredIn(const Part& part, const brep::Body& body) {
+  if (part.colours.empty()) return 0;
+  const auto own = std::span(part.colours).subspan(body.first_triangle, body.triangle_count);
+  return static_cast<std::size_t>(std::count_if(own.begin(), own.end(), [](const brep::CornerColours& colours) {
+    return colours.corner != std::array<std::uint32_t, 3>{};
+  }));
+}
+
 Json bodiesOf(const Part& part) {
   Json bodies = Json::array();
   for (const brep::Body& body : part.bodies)
@@ -49,7 +58,8 @@ Json bodiesOf(const Part& part) {
                       {"closed", (body.flags & brep::kClosed) != 0},
                       {"faces", body.face_count},
                       {"edges", body.edge_count},
-                      {"triangles", body.triangle_count}});
+                      {"triangles", body.triangle_count},
+                      {"coloured_triangles", colouredIn(part, body)}});
   return bodies;
 }
 
@@ -150,8 +160,13 @@ void printBodies(const Json& info) {
     const std::string name = body["name"].get<std::string>();
     std::printf("  body %s: %s, %s, ", name.empty() ? "unnamed" : ("'" + name + "'").c_str(),
                 body["kind"].get<std::string>().c_str(), body["closed"].get<bool>() ? "closed" : "open");
-    if (body["triangles"].get<std::size_t>() > 0)
-      std::printf("%s\n", counted(body["triangles"].get<std::size_t>(), "triangle").c_str());
+    const auto triangles = body["triangles"].get<std::size_t>(),
+               coloured = body["coloured_triangles"].get<std::size_t>();
+    if (triangles > 0)
+      std::printf("%s%s\n", counted(triangles, "triangle").c_str(),
+                  coloured == 0           ? ""
+                  : coloured == triangles ? ", all with a colour"
+                                          : (", " + std::to_string(coloured) + " with a colour").c_str());
     else
       std::printf("%s, %s\n", counted(body["faces"].get<std::size_t>(), "face").c_str(),
                   counted(body["edges"].get<std::size_t>(), "edge").c_str());

@@ -9,6 +9,7 @@
 #include "cli/recording/joint_ranges.hpp"
 #include "cli/recording/recorded_marks.hpp"
 #include "cli/recording/recorded_orders.hpp"
+#include "cli/recording/tick_times.hpp"
 #include "cli/recording/touched_features.hpp"
 #include "cli/support/command.hpp"
 #include "hapticd/abi.h"
@@ -24,7 +25,15 @@ const char* levelName(int level) {
   return level >= HSP_LOG_ERROR ? "error" : level == HSP_LOG_WARNING ? "warning" : "info";
 }
 
-void printRun(const std::string& file, const record::Recording& recording, const servo::RecordedRun& run) {
+void printModel(const servo::RunModel& one, TickTimes& times) {
+  const std::string plugin = one.model.plugin.empty() ? "" : " (" + one.model.plugin + ")";
+  std::printf("  model     %s%s", one.model.name.c_str(), plugin.c_str());
+  if (one.since > 0) std::printf(", from %.4f s on", times.of(static_cast<double>(one.since)));
+  std::printf("\n");
+}
+
+void printRun(const std::string& file, const record::Recording& recording, const servo::RecordedRun& run,
+              const servo::RunModels& models) {
   const record::RecordedStream* ticks = recording.stream("ticks");
   const uint64_t rows = ticks != nullptr ? ticks->rows() : 0;
   std::printf("%s: a %s of hapticd %s, begun %s\n", file.c_str(), recording.blackBox() ? "black box" : "recording",
@@ -36,8 +45,8 @@ void printRun(const std::string& file, const record::Recording& recording, const
   if (!recording.damage().empty()) std::printf("  damage    %s\n", recording.damage().c_str());
   for (const scene::Device& device : run.scene.devices)
     std::printf("  arm       %s (%s)\n", device.name.c_str(), device.module.c_str());
-  for (const scene::Model& model : run.scene.models)
-    std::printf("  model     %s (%s)\n", model.name.c_str(), model.plugin.c_str());
+  TickTimes times(recording);
+  for (const servo::RunModel& one : models.all()) printModel(one, times);
 }
 
 /// Prints the events that the log of the run had. Touches and clicks are many, so only their number is printed.
@@ -83,12 +92,13 @@ int explainRecording(const std::string& file) {
   if (!recording) return fail(kBadInput, recording.error());
   const auto run = servo::readAbout((*recording)->aboutJson());
   if (!run) return fail(kBadInput, file + ": " + run.error());
-  printRun(file, **recording, *run);
-  printEvents(servo::messagesOf(**recording, *run));
+  const servo::RunModels models(**recording, run->scene);
+  printRun(file, **recording, *run, models);
+  printEvents(servo::messagesOf(**recording, *run, models));
   printLines("marks", recordedMarks(**recording), "marks");
-  printLines("orders", recordedOrders(**recording, run->scene), "orders");
-  printLines("touched", touchedFeatures(**recording, run->scene, run->facts.rate), "contacts");
-  printLines("moved", jointRanges(**recording, run->scene, run->facts.rate), "poses");
+  printLines("orders", recordedOrders(**recording, run->scene, models), "orders");
+  printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");
+  printLines("moved", jointRanges(**recording, models, run->facts.rate), "poses");
   return kWorked;
 }
 

@@ -16,6 +16,7 @@
 #include "control/liveness.hpp"
 #include "document/suggestion.hpp"
 #include "session/replay/about.hpp"
+#include "session/replay/run_models.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -32,7 +33,10 @@ void printExport(const std::string& file, const record::Exported& done) {
 }
 
 int toMcap(const record::Recording& recording, const std::string& file) {
-  auto done = record::exportMcap(recording, file);
+  std::vector<record::Attachment> names;
+  if (const auto run = servo::readAbout(recording.aboutJson()))
+    names.push_back({"models.csv", "text/csv", modelsTable(servo::RunModels(recording, run->scene)).text});
+  auto done = record::exportMcap(recording, file, names);
   if (!done) return fail(kFailed, done.error());
   printExport(file, *done);
   return kWorked;
@@ -75,8 +79,9 @@ struct ExtraTable {
 std::vector<ExtraTable> extraTables(const record::Recording& recording, const std::filesystem::path& folder) {
   const auto run = servo::readAbout(recording.aboutJson());
   if (!run) return {};
-  std::vector<ExtraTable> all{{(folder / "models.csv").string(), kModelsHeader, modelsTable(run->scene)}};
-  NameTable joints = jointsTable(recording, run->scene);
+  const servo::RunModels models(recording, run->scene);
+  std::vector<ExtraTable> all{{(folder / "models.csv").string(), kModelsHeader, modelsTable(models)}};
+  NameTable joints = jointsTable(recording, models);
   if (joints.rows > 0) all.push_back({(folder / "joints.csv").string(), kJointsHeader, std::move(joints)});
   return all;
 }

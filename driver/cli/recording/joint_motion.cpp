@@ -44,10 +44,10 @@ JointPlace JointMotion::next(const Vector3d& position, const Quaterniond& orient
   return place;
 }
 
-void eachJointPlace(const record::Recording& recording, const scene::Scene& scene,
+void eachJointPlace(const record::Recording& recording, const servo::RunModels& models,
                     const std::function<void(size_t, const JointMotion&, double, const JointPlace&)>& take) {
   std::vector<std::optional<JointMotion>> joints;
-  for (const scene::Model& model : scene.models) joints.push_back(JointMotion::of(model));
+  for (const servo::RunModel& one : models.all()) joints.push_back(JointMotion::of(one.model));
   const record::RecordedStream* poses = recording.stream("poses");
   if (poses == nullptr) return;
   std::array<const record::Column*, 9> columns{};
@@ -58,8 +58,8 @@ void eachJointPlace(const record::Recording& recording, const scene::Scene& scen
   }
   for (uint64_t row = 0; row < poses->rows(); ++row) {
     const auto at = [&](size_t column) { return poses->number(row, *columns[column]); };
-    const auto model = static_cast<size_t>(at(0));
-    if (model >= joints.size() || !joints[model]) continue;  // others were added during the run
+    const size_t model = models.find(at(0), at(8));
+    if (model == servo::RunModels::kNone || !joints[model]) continue;
     take(model, *joints[model], at(8), joints[model]->next({at(1), at(2), at(3)}, {at(4), at(5), at(6), at(7)}));
   }
 }

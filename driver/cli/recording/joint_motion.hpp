@@ -8,8 +8,8 @@
 #include <functional>
 #include <optional>
 
-#include "description/scene.hpp"
 #include "record/recording.hpp"
+#include "session/replay/run_models.hpp"
 
 namespace hapticd::cli {
 
@@ -44,8 +44,8 @@ class JointMotion {
 };
 
 /// [main] Calls `take` for each tick of each model with a joint, in the order of the ticks.
-/// @param take number of the model, its joint, number of the tick, place of the joint
-void eachJointPlace(const record::Recording& recording, const scene::Scene& scene,
+/// @param take place of the model in models.all(), its joint, number of the tick, place of the joint
+void eachJointPlace(const record::Recording& recording, const servo::RunModels& models,
                     const std::function<void(size_t, const JointMotion&, double, const JointPlace&)>& take);
 
 }  // namespace hapticd::cli

@@ -80,14 +80,14 @@ class JointRange {
 
 }  // namespace
 
-std::vector<std::string> jointRanges(const record::Recording& recording, const scene::Scene& scene, double rate) {
+std::vector<std::string> jointRanges(const record::Recording& recording, const servo::RunModels& models, double rate) {
   std::map<size_t, JointRange> ranges;
   TickTimes times(recording);
-  eachJointPlace(recording, scene, [&](size_t model, const JointMotion& joint, double tick, const JointPlace& place) {
+  eachJointPlace(recording, models, [&](size_t model, const JointMotion& joint, double tick, const JointPlace& place) {
     ranges[model].add(joint, place, times.of(tick));
   });
   std::vector<std::string> lines;
-  for (const auto& [model, range] : ranges) lines.push_back(scene.models[model].name + ": " + range.text(rate));
+  for (const auto& [model, range] : ranges) lines.push_back(models.all()[model].model.name + ": " + range.text(rate));
   return lines;
 }
 

@@ -11,18 +11,19 @@ namespace hapticd::cli {
 
 using document::csvField;
 
-NameTable modelsTable(const scene::Scene& scene) {
-  NameTable table{std::string(kModelsHeader) + "\n", 0};
-  for (const scene::Model& model : scene.models)
-    table.text += fmt::format("{},{},{}\n", table.rows++, csvField(model.name), csvField(model.plugin));
+NameTable modelsTable(const servo::RunModels& models) {
+  NameTable table{std::string(kModelsHeader) + "\n", models.all().size()};
+  for (const servo::RunModel& one : models.all())
+    table.text +=
+        fmt::format("{},{},{},{}\n", one.number, csvField(one.model.name), csvField(one.model.plugin), one.since);
   return table;
 }
 
-NameTable jointsTable(const record::Recording& recording, const scene::Scene& scene) {
+NameTable jointsTable(const record::Recording& recording, const servo::RunModels& models) {
   NameTable table{std::string(kJointsHeader) + "\n", 0};
   TickTimes times(recording);
-  eachJointPlace(recording, scene, [&](size_t model, const JointMotion& joint, double tick, const JointPlace& place) {
-    table.text += fmt::format("{:.0f},{},{},{},{},{}\n", tick, times.of(tick), csvField(scene.models[model].name),
+  eachJointPlace(recording, models, [&](size_t model, const JointMotion& joint, double tick, const JointPlace& place) {
+    table.text += fmt::format("{:.0f},{},{},{},{},{}\n", tick, times.of(tick), csvField(models.all()[model].model.name),
                               joint.unit(), place.position, place.stop);
     ++table.rows;
   });

@@ -16,6 +16,7 @@
 #include "record/picture.hpp"
 #include "record/recording.hpp"
 #include "session/replay/about.hpp"
+#include "session/replay/run_models.hpp"
 
 namespace hapticd::cli {
 
@@ -85,34 +86,18 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
 }
 
 /// Notes when models were silenced, because otherwise the picture would not show why nothing is felt from then on.
-void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
+void noteSilenced(const record::Recording& recording, const servo::RunModels& models, record::RunNotes& notes) {
   const record::RecordedStream* events = recording.stream("events");
   const auto* kind = events != nullptr ? events->find("kind") : nullptr;
   const auto* model = events != nullptr ? events->find("model") : nullptr;
   const auto* t = events != nullptr ? events->find("t") : nullptr;
-  if (kind == nullptr || model == nullptr || t == nullptr) return;
+  const auto* tick = events != nullptr ? events->find("tick") : nullptr;
+  if (kind == nullptr || model == nullptr || t == nullptr || tick == nullptr) return;
   for (uint64_t row = 0; row < events->rows(); ++row) {
     if (events->number(row, *kind) != double{HAPTICD_SILENCED}) continue;
-    const double number = events->number(row, *model);
-    const bool named = number >= 0 && number < static_cast<double>(notes.models.size());
-    const std::string name = named ? notes.models[static_cast<size_t>(number)] : "a model";
+    const std::string name = models.nameOf(events->number(row, *model), events->number(row, *tick));
     notes.moments.emplace_back(events->number(row, *t), name + " is silenced");
   }
-}
-
-/// Returns models and limits of the run, and whether it ran in virtual time; empty if the description of the run cannot
-/// be read.
-record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
-  record::RunNotes notes;
-  notes.positions = true;
-  const auto about = servo::readAbout(recording.aboutJson());
-  if (!about) return notes;
-  virtual_time = about->facts.virtual_time;
-  for (const scene::Model& model : about->scene.models) notes.models.push_back(model.name);
-  if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
-  if (about->scene.devices.size() > 1 && arm < about->scene.devices.size()) notes.arm = about->scene.devices[arm].name;
-  noteSilenced(recording, notes);
-  return notes;
 }
 
 /// Replaces the depths of the stream `ticks`, which are the greatest of all arms, by those of one arm from the stream
@@ -138,6 +123,37 @@ void takeOwnDepths(const record::Recording& recording, uint32_t arm, const recor
       samples[i].depth_m = deep, samples[i].model = static_cast<int>(contacts->number(at, *model));
     }
   }
+}
+
+/// Replaces the numbers of the models by their places among those of the run, because a number can mean several models.
+void takeModels(const servo::RunModels& models, const record::Column& tick, const record::RecordedStream& ticks,
+                const std::vector<uint64_t>& rows, std::vector<record::Sample>& samples) {
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const size_t place = models.find(samples[i].model, ticks.number(rows[i], tick));
+    samples[i].model = place == servo::RunModels::kNone ? -1 : static_cast<int>(place);
+  }
+}
+
+/// Returns models and limits of the run, and whether it ran in virtual time; empty if the description of the run cannot
+/// be read. Gives the samples the models of the notes, and the depths of their arm. @param rows those of the samples
+record::RunNotes notesOf(const record::Recording& recording, const record::RecordedStream& ticks,
+                         const std::vector<uint64_t>& rows, uint32_t arm, std::vector<record::Sample>& samples,
+                         bool& virtual_time) {
+  record::RunNotes notes;
+  notes.positions = true;
+  const auto about = servo::readAbout(recording.aboutJson());
+  if (!about) return notes;
+  virtual_time = about->facts.virtual_time;
+  const servo::RunModels models(recording, about->scene);
+  for (const servo::RunModel& one : models.all()) notes.models.push_back(one.model.name);
+  if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
+  if (about->scene.devices.size() > 1 && arm < about->scene.devices.size()) notes.arm = about->scene.devices[arm].name;
+  noteSilenced(recording, models, notes);
+  const record::Column* tick = ticks.find("tick");
+  if (tick == nullptr) return notes;
+  if (!notes.arm.empty()) takeOwnDepths(recording, arm, *tick, ticks, rows, samples);
+  takeModels(models, *tick, ticks, rows, samples);
+  return notes;
 }
 
 /// Returns the name of the recording, with the scene and the only arm of the run as far as they are known. If there are
@@ -191,9 +207,7 @@ int plot(const PlotArguments& options) {
                                        options.file, first, last));
   if (const std::string wrong = whyNotWritable(out); !wrong.empty()) return fail(kBadInput, wrong);
   record::RunReport report = reportOf(titleOf(options.file, **recording), samples);
-  const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
-  if (const record::Column* tick = ticks->find("tick"); tick != nullptr && !notes.arm.empty())
-    takeOwnDepths(**recording, options.arm, *tick, *ticks, rows, samples);
+  const record::RunNotes notes = notesOf(**recording, *ticks, rows, options.arm, samples, report.virtual_time);
   if (auto drawn = record::drawRun(report, samples, notes, out); !drawn) return fail(kFailed, drawn.error());
   std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
   return kWorked;

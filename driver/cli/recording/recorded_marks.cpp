@@ -13,7 +13,9 @@ std::vector<std::string> recordedMarks(const record::Recording& recording) {
   const record::Column* t = marks != nullptr ? marks->find("t") : nullptr;
   const record::Column* text = marks != nullptr ? marks->find("text") : nullptr;
   if (t == nullptr || text == nullptr) return lines;
+  const record::Column* model = marks->find("model");  // older recordings have only marks of programs
   for (uint64_t row = 0; row < marks->rows(); ++row) {
+    if (model != nullptr && marks->number(row, *model) >= 0) continue;
     const std::string said = marks->text(row, *text);
     lines.push_back(fmt::format("{:9.4f} s  {}", marks->number(row, *t), isMarkText(said) ? said : "?"));
   }

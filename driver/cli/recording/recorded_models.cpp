@@ -16,6 +16,7 @@
 #include "record/recording.hpp"
 #include "session/replay/about.hpp"
 #include "session/replay/model_rerun.hpp"
+#include "session/replay/run_models.hpp"
 #include "session/requests/geometry_answer.hpp"
 #include "world/world.hpp"
 
@@ -40,6 +41,7 @@ class RecordedModelsImpl final : public RecordedModels {
     auto run = servo::readAbout((*recording)->aboutJson());
     if (!run) return Error{file + ": " + run.error()};
     recording_ = std::move(*recording);
+    later_ = laterJson(servo::RunModels(*recording_, run->scene), run->scene.models.size());
     for (const scene::Model& model : run->scene.models) models_.push_back(build(run->scene, model, run->facts.rate));
     std::string folder = (std::filesystem::temp_directory_path() / "hapticd-view-XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) return Error{folder + ": cannot be created"};
@@ -127,11 +129,23 @@ class RecordedModelsImpl final : public RecordedModels {
                         {"enabled", true},
                         {"live_parameters", Json::array()},
                         {"deforms", built.rerun != nullptr}});
-    return document::jsonLine(Json({{"ok", true}, {"models", std::move(models)}}));
+    return document::jsonLine(Json({{"ok", true}, {"models", std::move(models)}, {"later", later_}}));
+  }
+
+  /// Names the models that came during the run, with the tick from which on a number means them. They are not drawn.
+  static Json laterJson(const servo::RunModels& models, size_t of_scene) {
+    Json later = Json::array();
+    for (size_t i = of_scene; i < models.all().size(); ++i) {
+      const servo::RunModel& one = models.all()[i];
+      later.push_back(
+          {{"name", one.model.name}, {"plugin", one.model.plugin}, {"number", one.number}, {"tick", one.since}});
+    }
+    return later;
   }
 
   std::unique_ptr<record::Recording> recording_;
   std::vector<Built> models_;  // declared after the recording that the models read, so that they are destroyed first
+  Json later_;
   std::string folder_, socket_;
   std::unique_ptr<control::Server> server_;
 };

@@ -26,24 +26,24 @@ struct Row {
 /// Names what the numbers of an order stand for.
 class Names {
  public:
-  explicit Names(const scene::Scene& scene) : scene_(scene) {}
+  Names(const scene::Scene& scene, const servo::RunModels& models) : scene_(scene), models_(models) {}
 
-  std::string model(size_t place) const {
-    return place < scene_.models.size() ? scene_.models[place].name : fmt::format("model {}", place);
-  }
+  std::string model(const Row& row) const { return models_.nameOf(static_cast<double>(row.target), row.tick); }
   std::string arm(size_t place) const {
     return place < scene_.devices.size() ? scene_.devices[place].name : fmt::format("arm {}", place);
   }
   /// Only parameters that the scene gives have names in a recording.
-  std::string parameter(size_t place, uint32_t index) const {
-    if (place < scene_.models.size())
-      for (const scene::Value& value : scene_.models[place].parameters)
-        if (value.index == index) return value.id;
-    return fmt::format("parameter {}", index);
+  std::string parameter(const Row& row) const {
+    const size_t place = models_.find(static_cast<double>(row.target), row.tick);
+    if (place != servo::RunModels::kNone)
+      for (const scene::Value& value : models_.all()[place].model.parameters)
+        if (value.index == row.param) return value.id;
+    return fmt::format("parameter {}", row.param);
   }
 
  private:
   const scene::Scene& scene_;
+  const servo::RunModels& models_;
 };
 
 /// Returns "" for an order that is not told.
@@ -51,13 +51,13 @@ std::string words(const Row& row, const Names& names) {
   const bool force = row.param == static_cast<uint32_t>(Order::Led::kForce);
   switch (row.kind) {
     case Order::Kind::kEnable:
-      return "enable " + names.model(row.target);
+      return "enable " + names.model(row);
     case Order::Kind::kDisable:
-      return "disable " + names.model(row.target);
+      return "disable " + names.model(row);
     case Order::Kind::kMove:
-      return "move " + names.model(row.target);
+      return "move " + names.model(row);
     case Order::Kind::kSet:
-      return fmt::format("set {} {} {:g}", names.model(row.target), names.parameter(row.target, row.param), row.value);
+      return fmt::format("set {} {} {:g}", names.model(row), names.parameter(row), row.value);
     case Order::Kind::kClear:
       return "clear " + names.arm(row.target);
     case Order::Kind::kHold:
@@ -73,7 +73,8 @@ std::string words(const Row& row, const Names& names) {
 
 }  // namespace
 
-std::vector<std::string> recordedOrders(const record::Recording& recording, const scene::Scene& scene) {
+std::vector<std::string> recordedOrders(const record::Recording& recording, const scene::Scene& scene,
+                                        const servo::RunModels& models) {
   std::vector<std::string> lines;
   const record::RecordedStream* orders = recording.stream("orders");
   if (orders == nullptr) return lines;
@@ -83,7 +84,7 @@ std::vector<std::string> recordedOrders(const record::Recording& recording, cons
     columns[i] = orders->find(kNames[i]);
     if (columns[i] == nullptr) return lines;
   }
-  const Names names(scene);
+  const Names names(scene, models);
   TickTimes times(recording);
   for (uint64_t row = 0; row < orders->rows(); ++row) {
     const auto at = [&](size_t column) { return orders->number(row, *columns[column]); };

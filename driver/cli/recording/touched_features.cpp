@@ -47,10 +47,10 @@ class Faults {
   std::uint64_t row_ = 0;
 };
 
-/// Counts the ticks of contact of each feature, for each place of a model.
-std::map<std::uint32_t, Touched> contactTicks(const record::RecordedStream& contacts,
-                                              const record::RecordedStream* all) {
-  std::map<std::uint32_t, Touched> touched;
+/// Counts the ticks of contact of each feature, for each model, by its place in models.all().
+std::map<std::size_t, Touched> contactTicks(const record::RecordedStream& contacts, const record::RecordedStream* all,
+                                            const servo::RunModels& models) {
+  std::map<std::size_t, Touched> touched;
   const record::Column *tick = contacts.find("tick"), *model = contacts.find("model"), *probe = contacts.find("probe"),
                        *feature = contacts.find("feature"), *depth = contacts.find("depth"),
                        *gain = contacts.find("gain");  // older recordings have no gain
@@ -61,7 +61,9 @@ std::map<std::uint32_t, Touched> contactTicks(const record::RecordedStream& cont
   Faults faults(all);
   for (std::uint64_t row = 0; row < contacts.rows(); ++row) {
     if (!(contacts.number(row, *depth) > 0) || faults.at(contacts.number(row, *tick), whole(row, *probe))) continue;
-    Touched& one = touched[whole(row, *model)];
+    const std::size_t place = models.find(contacts.number(row, *model), contacts.number(row, *tick));
+    if (place == servo::RunModels::kNone) continue;
+    Touched& one = touched[place];
     ++one.ticks[whole(row, *feature)];
     if (gain != nullptr && contacts.number(row, *gain) == 0) ++one.forceless;
   }
@@ -113,15 +115,15 @@ std::string longest(const Ticks& ticks, const std::optional<brep::Part>& part, d
 
 }  // namespace
 
-std::vector<std::string> touchedFeatures(const record::Recording& recording, const scene::Scene& scene, double rate) {
+std::vector<std::string> touchedFeatures(const record::Recording& recording, const servo::RunModels& models,
+                                         double rate) {
   std::vector<std::string> lines;
   const record::RecordedStream* contacts = recording.stream("contacts");
   if (contacts == nullptr) return lines;
-  for (const auto& [place, touched] : contactTicks(*contacts, recording.stream("ticks"))) {
-    const bool known = place < scene.models.size();  // others were added during the run
-    const std::string name = known ? scene.models[place].name : "model " + std::to_string(place);
-    const auto part = known ? partOf(scene.models[place]) : std::nullopt;
-    lines.push_back(name + ": " + longest(touched.ticks, part, rate) + withoutForce(touched.forceless, rate));
+  for (const auto& [place, touched] : contactTicks(*contacts, recording.stream("ticks"), models)) {
+    const scene::Model& model = models.all()[place].model;
+    lines.push_back(model.name + ": " + longest(touched.ticks, partOf(model), rate) +
+                    withoutForce(touched.forceless, rate));
   }
   return lines;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "description/scene.hpp"
 #include "record/recording.hpp"
+#include "session/replay/run_models.hpp"
 
 namespace hapticd::cli {
 
@@ -15,6 +15,7 @@ namespace hapticd::cli {
 /// longest contacts.
 /// A line ends with the time in which the model gave no force while it was touched, if there was any.
 /// Ticks in which the arm had a fault are no contact. @param rate [Hz] of the run
-std::vector<std::string> touchedFeatures(const record::Recording& recording, const scene::Scene& scene, double rate);
+std::vector<std::string> touchedFeatures(const record::Recording& recording, const servo::RunModels& models,
+                                         double rate);
 
 }  // namespace hapticd::cli

@@ -68,6 +68,15 @@ std::vector<std::uint32_t> representatives(const WeldedMesh& mesh, const Cluster
   return best;
 }
 
+/// True if colours are so near that one stands for the other: a scan has another colour at each point.
+bool isAlike(std::uint32_t a, std::uint32_t b) {
+  constexpr int kNear = 8;  // of 255
+  if (a == b || a == 0 || b == 0) return a == b;
+  for (int shift = 0; shift < 24; shift += 8)
+    if (std::abs(static_cast<int>(a >> shift & 0xff) - static_cast<int>(b >> shift & 0xff)) > kNear) return false;
+  return true;
+}
+
 /// Builds the lists of a drawing. A cluster has a vertex for each direction in which its surface looks, and each
 /// colour.
 class Builder {
@@ -101,7 +110,10 @@ class Builder {
   }
 
  private:
-  /// The corners of a cluster that have one colour and nearly the same normal.
+  /// A cluster with more colours than this, which is noise, takes one for another: the list of its sides stays short.
+  static constexpr std::uint32_t kMostColours = 16;
+
+  /// The corners of a cluster that have nearly one colour and nearly the same normal.
   struct Side {
     std::uint32_t cluster, next;  ///< next: another side of the cluster, or kNone
     std::uint32_t colour;
@@ -122,8 +134,10 @@ class Builder {
   std::uint32_t sideOf(std::size_t corner) {
     const std::uint32_t cluster = clusters_.of[welded_.corners[corner]], colour = colourAt(corner);
     const Eigen::Vector3f normal = normalAt(corner);
+    std::uint32_t seen = 0;
     for (std::uint32_t s = first_[cluster]; s != kNone; s = sides_[s].next)
-      if (sides_[s].colour == colour && (!hasNormals() || sides_[s].first.dot(normal) >= kSmooth)) {
+      if ((isAlike(sides_[s].colour, colour) || ++seen > kMostColours) &&
+          (!hasNormals() || sides_[s].first.dot(normal) >= kSmooth)) {
         sides_[s].sum += normal;
         return s;
       }

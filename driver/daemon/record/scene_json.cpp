@@ -286,4 +286,16 @@ Result<scene::Scene> sceneFromJson(const std::string& json_text) {
   }
 }
 
+std::string modelToJson(const scene::Model& model) {
+  return modelJson(model).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+Result<scene::Model> modelFromJson(const std::string& json_text) {
+  try {
+    return toModel(document::parseJsonOrThrow(json_text));
+  } catch (const std::exception& error) {
+    return Error{std::string("the description of a model cannot be read: ") + error.what()};
+  }
+}
+
 }  // namespace hapticd::record

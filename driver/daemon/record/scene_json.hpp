@@ -12,4 +12,8 @@ namespace hapticd::record {
 std::string sceneToJson(const scene::Scene& scene);                ///< [main]
 Result<scene::Scene> sceneFromJson(const std::string& json_text);  ///< [main] its error says what is missing
 
+/// [main] Returns JSON of one model in the characters of ASCII, so that it can be cut anywhere.
+std::string modelToJson(const scene::Model& model);
+Result<scene::Model> modelFromJson(const std::string& json_text);  ///< [main]
+
 }  // namespace hapticd::record

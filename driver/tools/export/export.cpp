@@ -84,7 +84,8 @@ void appendValue(std::string& line, const RecordedStream& stream, uint64_t row, 
 
 }  // namespace
 
-Result<Exported> exportMcap(const Recording& recording, const std::string& file) {
+Result<Exported> exportMcap(const Recording& recording, const std::string& file,
+                            const std::vector<Attachment>& further) {
   auto out = McapWriter::create(file);
   if (!out) return Error{out.error()};
   std::vector<Outgoing> others;
@@ -114,6 +115,7 @@ Result<Exported> exportMcap(const Recording& recording, const std::string& file)
   }
   for (Outgoing& other : others) send(**out, other, UINT64_MAX, time);
   (*out)->attach("about.json", "application/json", recording.aboutJson(), start);
+  for (const Attachment& one : further) (*out)->attach(one.name, one.media_type, one.text, start);
   if (auto closed = (*out)->close(); !closed) return Error{closed.error()};
   return Exported{(*out)->messages(), (*out)->bytes()};
 }

@@ -48,6 +48,9 @@ class Checker {
     each("instance", part_.instances, &Checker::instance);
     each("point", part_.points, &Checker::point);
     each("triangle", part_.triangles, &Checker::triangle);
+    if (!part_.colours.empty() && part_.colours.size() != part_.triangles.size())
+      throw PartError("colours: there are those of " + std::to_string(part_.colours.size()) + " triangles, expected " +
+                      std::to_string(part_.triangles.size()) + ", as many as the part has, or none");
     owners();
   }
 

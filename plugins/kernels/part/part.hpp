@@ -193,6 +193,11 @@ struct Triangle {
   std::array<std::uint32_t, 3> across{kNone, kNone, kNone};
 };
 
+/// The colours of the corners of a triangle: red, green, blue, 255 from the lowest byte up; 0 if unknown.
+struct CornerColours {
+  std::array<std::uint32_t, 3> corner{};
+};
+
 /// A piece of geometry that an import could not keep exactly.
 struct Loss {
   std::string what;    ///< the piece, such as "face 12 'lid'" or "curve of edge 7"
@@ -231,6 +236,7 @@ struct Part {
   std::vector<Instance> instances;
   std::vector<Point> points;
   std::vector<Triangle> triangles;
+  std::vector<CornerColours> colours;  ///< of each triangle; empty if no triangle has a colour
 };
 
 /// [main] Sets first_coedge and coedge_count of all edges, and next of all coedges, from Coedge::edge. Indices out of
@@ -240,6 +246,7 @@ void linkCoedges(Part& part);
 static_assert(sizeof(Surface) == 176 && sizeof(Curve3) == 96 && sizeof(Curve2) == 72 && sizeof(Vertex) == 32);
 static_assert(sizeof(Edge) == 56 && sizeof(Coedge) == 40 && sizeof(Loop) == 8 && sizeof(Face) == 72);
 static_assert(sizeof(Body) == 64 && sizeof(Instance) == 112 && sizeof(Point) == 24 && sizeof(Triangle) == 24);
+static_assert(sizeof(CornerColours) == 12);
 static_assert(std::is_trivially_copyable_v<Surface> && std::is_trivially_copyable_v<Body>);
 
 }  // namespace hapticd::brep

@@ -23,6 +23,7 @@ void forEachSection(PartType& part, Visitor&& visit) {
   visit("instance", part.instances);
   visit("point", part.points);
   visit("triangle", part.triangles);
+  visit("colour", part.colours);
 }
 
 constexpr std::size_t alignedSection(std::size_t offset) {

@@ -100,6 +100,41 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(placed.text, "fit into 0.2 m, turned, z is up, centred")) << placed.text;
 }
 
+TEST_F(ImportCommands, ImportKeepsColoursAndReadsNoFileOfMaterialsOutsideOfTheFolder) {
+  const std::string part = (dir_ / "egg.hpart").string();
+  const auto imported = [&](const std::string& library) {
+    const std::string text =
+        "mtllib " + library + "\nv 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nusemtl red\nf 1 2 4\n";
+    const Outcome made = run("import " + put("egg.obj", text) + " -o " + part);
+    EXPECT_EQ(made.exit_code, 0) << made.text;
+    return made.text;
+  };
+  const std::string red = "newmtl red\nKd 1 0 0\n";
+  put("a.mtl", red);
+  EXPECT_TRUE(has(imported("a.mtl"), "2 triangles, 4 points, 0.1 x 0.1 x 0.1 m, open"));
+  EXPECT_TRUE(has(imported("a.mtl"), "  colours: 1 triangle\n"));
+  EXPECT_TRUE(has(run("part info " + part).text, "body 'egg': mesh, open, 2 triangles, 1 with a colour\n"));
+  EXPECT_TRUE(has(run("part info " + part + " --json").text, "\"coloured_triangles\": 1"));
+  EXPECT_TRUE(
+      has(run("import " + (dir_ / "egg.obj").string() + " --json -o " + part).text, "\"coloured_triangles\": 1"));
+  EXPECT_TRUE(has(
+      imported("b.mtl"),
+      "the file of materials 'b.mtl': there is no such file, expected the path of a file; its colours are missing\n"));
+  EXPECT_FALSE(has(run("part info " + part).text, "with a colour"));
+  EXPECT_TRUE(has(run("part info " + part).text, "the file of materials 'b.mtl': there is no such file"))
+      << "the part keeps the note";
+  for (const std::string& name : {std::string("../a.mtl"), (dir_ / "a.mtl").string()})
+    EXPECT_TRUE(has(imported(name), "' is not read, because it is not in the folder of the mesh: put it there"))
+        << name;
+  std::filesystem::create_directory(dir_ / "c.mtl");
+  EXPECT_TRUE(has(imported("c.mtl"), "'c.mtl': is a folder, expected a file; its colours")) << imported("c.mtl");
+  std::filesystem::create_symlink("d.mtl", dir_ / "d.mtl");
+  EXPECT_TRUE(has(imported("d.mtl"), "'d.mtl': cannot be read: Too many levels of symbolic links; its colours"))
+      << imported("d.mtl");
+  std::filesystem::resize_file(put("e.mtl", red), 17u << 20);
+  EXPECT_TRUE(has(imported("e.mtl"), "'e.mtl': is larger than 16")) << imported("e.mtl");
+}
+
 /// A part may be larger than any model file, which has a limit of 32 MiB.
 TEST_F(ImportCommands, ALargePartIsNoModelFileThatIsTooLarge) {
   const std::string part = (dir_ / "egg.hpart").string();

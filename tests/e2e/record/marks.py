@@ -47,7 +47,7 @@ def marks(ask):
                 pass
         rows = h.rows("marks")
         check("the rows of a client have the texts", [row["text"].decode() for row in rows] == [FIRST, SECOND, LONGEST], rows)
-        check("and its columns their type", [c.type for c in h.streams["marks"].columns] == ["u8", "f8", "s96"])
+        check("and its columns their type", [c.type for c in h.streams["marks"].columns] == ["u8", "f8", "i4", "u4", "s96"])
     return ticks
 
 

@@ -95,6 +95,25 @@ test('what a crash left is shown, plays in a loop, and its events have times', (
   await page.screenshot({path: join(pictures, 'crash.png')});
 }));
 
+test('models that came during a recording have their names', () => browser.sandboxed(async (sandbox, open) => {
+  const h5 = join(sandbox.folder, 'run.h5'), run = sandbox.start(['run', scenes('torus'), '--name', 'test', '--record', h5]);
+  const ctl = (...words) => execFileSync(hapticd, ['ctl', '--name', 'test', '--wait', '30', ...words], {env: {...process.env, ...sandbox.env}, stdio: 'ignore'});
+  ctl('add', scenes('sphere'));
+  ctl('remove', 'sphere');
+  ctl('add', scenes('teapot'));
+  ctl('disable', 'teapot');
+  ctl('stop');
+  await run.ended;
+  const [url] = await sandbox.start(['view', '--file', h5]).says(/http:\S+/);
+  const page = await open(url);
+  await shown(page);
+  const last = await page.evaluate(() => window.hapticdView.timeline.state.to);
+  await page.evaluate((t) => window.hapticdView.ask({do: 'seek', t}), last);
+  await page.getByRole('tab', {name: 'Events'}).click();
+  for (const text of ['sphere: was added', 'sphere: was removed', 'teapot: was added', 'teapot: disabled']) await page.getByText(text, {exact: true}).first().waitFor();
+  assert.equal(await page.locator('#events li', {hasText: /\bmodel \d|\{/}).count(), 0, 'numbers or descriptions in the list');
+}));
+
 test('a daemon that ends and starts again is followed', () => browser.sandboxed(async (sandbox, open) => {
   const first = sandbox.start(['run', scenes('sphere'), '--name', 'test']);
   const view = sandbox.start(['view', '--name', 'test']);

@@ -30,8 +30,11 @@ struct Order {
     // Leads of other programs.
     kLead,    ///< a leader begins; `param` says what it leads
     kUnlead,  ///< the leader has gone
-    kMark     ///< a program marks this tick with a text. It changes nothing; the stream `marks` has it, not `orders`
+    /// A text for the stream `marks`, which has it instead of `orders`. It changes nothing. `target` is kNoModel for a
+    /// mark of a program, otherwise the model that the text describes.
+    kMark
   };
+  static constexpr uint32_t kNoModel = UINT32_MAX;
   static constexpr uint32_t kTextBytes = 96;  ///< [bytes] size of `text`, with the zero at its end
   /// What a lead moves: `param` of kLead and kUnlead.
   enum class Led : uint32_t {
@@ -43,8 +46,9 @@ struct Order {
   static constexpr uint32_t kOnceFree = 1;
   Kind kind = Kind::kNone;
   uint32_t target = 0;  ///< index of the model or the arm
-  uint32_t param = 0;   ///< kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings
-  uint32_t place = 0;   ///< kLead and kUnlead of a force: place of the program in ClientForces::clients()
+  /// kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings; kMark: how many texts are to come
+  uint32_t param = 0;
+  uint32_t place = 0;  ///< kLead and kUnlead of a force: place of the program in ClientForces::clients()
   double value = 0;  ///< kSet: new value; kAccuracy: level; kCut: 1 if found before the tick's read, 0 if at its write
   double seconds = 0;  ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; four zeros keep the orientation

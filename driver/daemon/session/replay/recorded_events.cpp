@@ -47,16 +47,17 @@ hapticd_event eventAt(const record::RecordedStream& events, const EventColumns& 
   return event;
 }
 
-/// Gives a name to each model: those of the scene have theirs, and those that were added during the run their number.
-void nameModels(PlaceNames& names, const scene::Scene& scene) {
-  uint32_t place = 0;
-  for (const scene::Model& model : scene.models) names.came(place++, 0, {model.name, model.plugin});
-  for (; place < kMostPlaces; ++place) names.came(place, 0, {"model " + std::to_string(place), ""});
+/// Gives a name to each model; to one that the recording does not name, its number.
+void nameModels(PlaceNames& names, const RunModels& models) {
+  for (const RunModel& one : models.all()) names.came(one.number, one.since, {one.model.name, one.model.plugin});
+  for (uint32_t place = 0; place < kMostPlaces; ++place)
+    if (models.find(place, HUGE_VAL) == RunModels::kNone) names.came(place, 0, {models.nameOf(place, 0), ""});
 }
 
 }  // namespace
 
-std::vector<RecordedMessage> messagesOf(const record::Recording& recording, const RecordedRun& run) {
+std::vector<RecordedMessage> messagesOf(const record::Recording& recording, const RecordedRun& run,
+                                        const RunModels& models) {
   std::vector<RecordedMessage> messages;
   const record::RecordedStream* events = recording.stream("events");
   if (events == nullptr) return messages;
@@ -66,7 +67,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
   std::vector<EventLog::Named> devices;
   for (const scene::Device& device : run.scene.devices) devices.push_back({device.name, device.file.string()});
   EventLog log(kMostPlaces, std::move(devices), no_arms);
-  nameModels(log.names(), run.scene);
+  nameModels(log.names(), models);
   for (uint64_t row = 0; row < events->rows(); ++row) {
     const hapticd_event event = eventAt(*events, columns, row);
     if (event.kind == HAPTICD_END_STOP) continue;  // the motion of a joint tells more

@@ -6,6 +6,7 @@
 
 #include "record/recording.hpp"
 #include "session/replay/about.hpp"
+#include "session/replay/run_models.hpp"
 
 namespace hapticd::servo {
 
@@ -15,8 +16,8 @@ struct RecordedMessage {
   std::string who, text;  ///< the model or the arm; empty if the text names it
 };
 
-/// [main] Returns the events that have words, in order. Models that were added during the run have no name in a
-/// recording: they are called by their number.
-std::vector<RecordedMessage> messagesOf(const record::Recording& recording, const RecordedRun& run);
+/// [main] Returns the events that have words, in order. @param models those of this recording
+std::vector<RecordedMessage> messagesOf(const record::Recording& recording, const RecordedRun& run,
+                                        const RunModels& models);
 
 }  // namespace hapticd::servo

@@ -160,6 +160,7 @@ Result<std::string> RequestHandler::mark(const std::string& text) {
   const uint64_t number = flight.ring().written(kMarks);  // of the next mark, because only this thread gives them
   Order order;
   order.kind = Order::Kind::kMark;
+  order.target = Order::kNoModel;
   text.copy(order.text, sizeof order.text - 1);
   if (auto given = post(order); !given) return Error{given.error()};
   MarkRow row;

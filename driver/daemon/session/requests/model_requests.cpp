@@ -13,6 +13,7 @@
 #include "host/catalog.hpp"
 #include "host/file_stamp.hpp"
 #include "host/replaced_library.hpp"
+#include "record/scene_json.hpp"
 #include "scene/load.hpp"
 #include "session/messages/setup_watch.hpp"
 #include "session/requests/foreign_files.hpp"
@@ -176,6 +177,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   for (const auto& shape : shapes) came_stiffness_.push_back(shape->report().max_stiffness);
   for (size_t i = 0; i < models.size(); ++i) {
     const uint32_t place = empty[i];
+    if (auto told = describe(place, models[i]); !told) return told;
     prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
     runner_.nameModel(place, models[i].name, models[i].plugin, models[i].library.string());
     Order order;
@@ -189,6 +191,29 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     if (!given) return given;
     prepared_.pop_back();
   }
+  return {};
+}
+
+/// Writes into the stream `marks` what comes to this place, so that a recording names its models and joints. The text
+/// is cut into rows. A long one gets no parameters, and none has a path, which a reader of names does not need.
+Result<void> RequestHandler::describe(uint32_t place, const scene::Model& model) {
+  constexpr size_t kBytes = Order::kTextBytes - 1, kMostRows = 64, kAtOnce = 16;
+  scene::Model short_model = model;
+  short_model.path.clear();
+  std::string text = record::modelToJson(short_model);
+  if (text.size() > kBytes * kMostRows) {
+    short_model.parameters.clear();
+    text = record::modelToJson(short_model);
+  }
+  std::vector<Order> orders((text.size() + kBytes - 1) / kBytes);
+  for (size_t i = 0; i < orders.size(); ++i) {
+    orders[i].kind = Order::Kind::kMark;
+    orders[i].target = place;
+    orders[i].param = static_cast<uint32_t>(orders.size() - 1 - i);
+    text.copy(orders[i].text, kBytes, i * kBytes);
+  }
+  for (size_t i = 0; i < orders.size(); i += kAtOnce)
+    if (auto given = post(std::span(orders).subspan(i, std::min(kAtOnce, orders.size() - i))); !given) return given;
   return {};
 }
 

@@ -199,12 +199,14 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
                     document::suggestionOfName(model.substr(0, 100), names));
 }
 
-Result<void> RequestHandler::post(const Order& order) {
-  if (!runner_.postOrder(order))
-    return refuse(
-        "busy",
-        "the servo has not carried out the orders before this one; it may have stopped: see hapticd ctl status");
-  ++given_;
+Result<void> RequestHandler::post(std::span<const Order> orders) {
+  for (const Order& order : orders) {
+    if (!runner_.postOrder(order))
+      return refuse(
+          "busy",
+          "the servo has not carried out the orders before this one; it may have stopped: see hapticd ctl status");
+    ++given_;
+  }
   if (!waitUntil([&] { return runner_.loop().ordersDone() >= given_; }))
     return refuse("timeout",
                   "the servo did not carry out the order within 2 s; it may have stopped: see hapticd ctl status");

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -81,7 +82,8 @@ class RequestHandler {
   Result<void> attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
                       SealedMemory::Writers writers);
   Result<void> unlead(const control::Peer& peer, const control::Request& request);
-  Result<void> post(const Order& order);
+  Result<void> post(const Order& order) { return post({&order, 1}); }
+  Result<void> post(std::span<const Order> orders);
   Result<std::string> mark(const std::string& text);
   Result<std::string> enable(const std::string& model);
   Result<void> setEnabled(const std::string& model, bool enabled);
@@ -98,6 +100,7 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
+  Result<void> describe(uint32_t place, const scene::Model& model);
   void addWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
                    nlohmann::ordered_json& json) const;
   nlohmann::ordered_json cameAnswer(const std::vector<scene::Model>& models);

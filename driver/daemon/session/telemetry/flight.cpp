@@ -94,8 +94,12 @@ bool Flight::mark(uint64_t number, MarkRow& row) const {
 /// Keeps a mark until the time of its tick is known. The number of its row is known already.
 void Flight::mark(const Order& order) noexcept HSP_RT {
   if (mark_count_ == marks_.size()) return;
-  events_.mark(static_cast<uint32_t>(ring_->written(kMarks) + mark_count_));
-  copyAll(marks_[mark_count_++].text, order.text);
+  const bool of_program = order.target == Order::kNoModel;
+  if (of_program) events_.mark(static_cast<uint32_t>(ring_->written(kMarks) + mark_count_));
+  MarkRow& row = marks_[mark_count_++];
+  row.model = of_program ? -1 : static_cast<int32_t>(order.target);
+  row.left = order.param;
+  copyAll(row.text, order.text);
 }
 
 void Flight::marks(double t) noexcept HSP_RT {

@@ -102,10 +102,12 @@ struct MotorRow {
   double winding = 0, share = 0;
 };
 
-/// A text with which a program marked the tick.
+/// A text with which a program marked the tick, or a part of the description of a model that is about to come.
 struct MarkRow {
   uint64_t tick = 0;
   double t = 0;
+  int32_t model = -1;  ///< -1: a mark of a program
+  uint32_t left = 0;   ///< rows with further parts of the description
   char text[Order::kTextBytes] = {};
 };
 static_assert(Order::kTextBytes == record::kTextBytes);

@@ -196,7 +196,10 @@ RowLayout markColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick");
   layout.add("t", ColumnType::kReal, "s", "time since the first tick");
-  layout.add("text", ColumnType::kText, "", "what the program wrote: UTF-8, filled up with zeros");
+  layout.add("model", ColumnType::kInt, "", "-1: a program wrote the text; otherwise number of the model it describes");
+  layout.add("left", ColumnType::kWord, "", "number of rows that follow with the rest of the description of the model");
+  layout.add("text", ColumnType::kText, "",
+             "UTF-8, filled up with zeros: what the program wrote, or a part of the JSON that describes the model");
   return layout;
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "mesh_import/mesh_edges.hpp"
-
 namespace hapticd::importing {
 namespace {
 
@@ -64,7 +62,8 @@ bool mayJoin(const Around& around, std::uint32_t a, std::uint32_t b) {
 }
 
 /// Joins the ends of short edges that have no triangle in common with one another. Returns how many it has joined.
-std::size_t joinOnce(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
+std::size_t joinOnce(const std::vector<Vector3d>& points, double rounding, MeshTriangles& triangles) {
+  TriangleCorners& corners = triangles.corners;
   const std::vector<MeshEdge> edges = meshEdges(corners);
   std::vector<std::array<std::uint32_t, 2>> found;
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
@@ -88,17 +87,20 @@ std::size_t joinOnce(const std::vector<Vector3d>& points, double rounding, Trian
     around.each(from, [&](std::uint32_t t) { std::replace(corners[t].begin(), corners[t].end(), from, to); });
     ++joined;
   }
-  std::erase_if(corners, [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
+  triangles.eraseIf([&](std::size_t t) {
+    const Corners& c = corners[t];
+    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+  });
   return joined;
 }
 
 }  // namespace
 
-std::size_t joinCoincident(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
+std::size_t joinCoincident(const std::vector<Vector3d>& points, double rounding, MeshTriangles& triangles) {
   constexpr int kMostRounds = 64;  // edges that share a triangle are joined one after another
   std::size_t joined = 0;
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::size_t now = joinOnce(points, rounding, corners);
+    const std::size_t now = joinOnce(points, rounding, triangles);
     joined += now;
     if (now == 0) break;
   }

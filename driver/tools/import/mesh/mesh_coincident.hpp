@@ -9,6 +9,6 @@ namespace hapticd::importing {
 /// their two triangles. Both triangles vanish: they are needles whose direction only rounding decides. Edges stay where
 /// this would change how the surface hangs together.
 /// @return how many points were joined with another one
-std::size_t joinCoincident(const std::vector<Eigen::Vector3d>& points, double rounding, TriangleCorners& corners);
+std::size_t joinCoincident(const std::vector<Eigen::Vector3d>& points, double rounding, MeshTriangles& triangles);
 
 }  // namespace hapticd::importing

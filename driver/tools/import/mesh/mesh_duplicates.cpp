@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "kernels/brep/model/groups.hpp"
-#include "mesh_import/mesh_edges.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -111,7 +110,8 @@ std::vector<char> emptyPairs(const std::vector<Corners>& corners, const Doubles&
 
 }  // namespace
 
-LeftOut leaveOutDuplicates(std::vector<Corners>& corners, Flange flange) {
+LeftOut leaveOutDuplicates(MeshTriangles& triangles, Flange flange) {
+  const std::vector<Corners>& corners = triangles.corners;
   Doubles doubles = findDoubles(corners);
   LeftOut left;
   const std::vector<char> empty = doubles.backs.empty() ? std::vector<char>{} : emptyPairs(corners, doubles, flange);
@@ -122,8 +122,7 @@ LeftOut leaveOutDuplicates(std::vector<Corners>& corners, Flange flange) {
     left.back_to_back += both ? 1 : 0;
     left.duplicates += !both && doubles.drop[t] != 0 ? 1 : 0;
   }
-  std::size_t at = 0;
-  std::erase_if(corners, [&](const Corners&) { return doubles.drop[at++] != 0; });
+  triangles.eraseIf([&](std::size_t t) { return doubles.drop[t] != 0; });
   return left;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Triangles that have the same three corners as another one.
 #pragma once
-#include <array>
-#include <cstdint>
-#include <vector>
+#include <cstddef>
+
+#include "mesh_import/mesh_edges.hpp"
 
 namespace hapticd::importing {
 
@@ -19,6 +19,6 @@ enum class Flange { kKeepOneSide, kLeaveOut };
 /// [main] Leaves out triangles that have the same three corners as another one. Of such triangles one is kept. Pairs
 /// that lie back to back between two bodies, as a wall does, are both left out if this joins the bodies along whole
 /// edges: to keep one would leave edges of three triangles.
-LeftOut leaveOutDuplicates(std::vector<std::array<std::uint32_t, 3>>& corners, Flange flange);
+LeftOut leaveOutDuplicates(MeshTriangles& triangles, Flange flange);
 
 }  // namespace hapticd::importing

@@ -8,6 +8,27 @@
 
 namespace hapticd::importing {
 
+/// The triangles of a mesh while it is repaired.
+struct MeshTriangles {
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  std::vector<std::uint32_t> from;  ///< the triangle of the file from which each one comes
+
+  /// Removes the triangles for which drop(index) is true. Returns how many these are.
+  template <class Drop>
+  std::size_t eraseIf(const Drop& drop) {
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < corners.size(); ++t) {
+      if (drop(t)) continue;
+      corners[kept] = corners[t];
+      from[kept++] = from[t];
+    }
+    const std::size_t removed = corners.size() - kept;
+    corners.resize(kept);
+    from.resize(kept);
+    return removed;
+  }
+};
+
 struct MeshEdge {
   std::uint64_t ends;  ///< indices of the two points: the smaller in the upper 32 bits, the larger in the lower 32 bits
   std::uint32_t code;  ///< 4 * triangle + edge

@@ -65,6 +65,7 @@ class Copy {
       corner = known->second;
     }
     to.corners.push_back(corners);
+    if (!from_.colours.empty()) to.colours.push_back(from_.colours[triangle]);
   }
 
  private:

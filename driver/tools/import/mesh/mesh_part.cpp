@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "mesh_import/mesh_colours.hpp"
 #include "mesh_import/mesh_objects.hpp"
 #include "mesh_import/mesh_repair.hpp"
 
@@ -83,6 +84,7 @@ void addObjects(const std::vector<MeshObject>& objects, const MeshOptions& optio
     report.add(of_body);
     if (mesh.corners.empty()) continue;
     const std::uint32_t body = addBody(mesh, of_body.closed, options, part);
+    report.coloured += addColours(object.mesh, options.scale, mesh, part);
     const std::string own = several && !object.name.empty() ? object.name : name;
     addInstance(own, body, several ? 0 : kNone, part);
     if (several) report.bodies.push_back({own, of_body.triangles, of_body.closed});
@@ -118,6 +120,10 @@ brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std:
   part.source.placed = options.placed;
   addObjects(objectsOf(mesh, report.remarks), options, file_name.substr(0, file_name.rfind('.')), part, report);
   if (part.triangles.empty()) throw std::invalid_argument("all triangles have zero area");
+  if (report.coloured == 0)
+    part.colours.clear();
+  else
+    part.colours.resize(part.triangles.size());
   Eigen::AlignedBox3d box;
   for (const brep::Point& p : part.points) box.extend(Vector3d(p.data()));
   report.size = box.sizes();

@@ -40,6 +40,7 @@ struct MeshReport {
   std::size_t unorientable = 0;  ///< edges whose two triangles cannot be given the same outward side
   std::size_t free_edges = 0, holes = 0;  ///< edges with only one triangle, and the closed chains that they form
   std::size_t shells = 0;                 ///< connected surfaces
+  std::size_t coloured = 0;               ///< triangles with a colour
   bool closed = false;                    ///< true if the mesh bounds a volume
   double volume = 0;                      ///< [m^3] enclosed volume if closed
   Eigen::Vector3d size{0, 0, 0};          ///< [m] size of the bounding box

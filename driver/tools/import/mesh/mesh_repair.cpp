@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "mesh_import/mesh_coincident.hpp"
@@ -21,7 +22,9 @@ using Eigen::Vector3d;
 
 class Repair {
  public:
-  Repair(const MeshFile& mesh, double scale, MeshReport& report) : corners_(mesh.corners), report_(report) {
+  Repair(const MeshFile& mesh, double scale, MeshReport& report)
+      : triangles_{mesh.corners, std::vector<std::uint32_t>(mesh.corners.size())}, report_(report) {
+    std::iota(triangles_.from.begin(), triangles_.from.end(), 0u);
     points_.reserve(mesh.points.size());
     for (const Vector3d& p : mesh.points) points_.emplace_back(scale * p);
   }
@@ -41,22 +44,25 @@ class Repair {
   }
 
   std::vector<Vector3d> points_;
-  std::vector<Corners> corners_;
+  MeshTriangles triangles_;
+  std::vector<Corners>& corners_ = triangles_.corners;
   std::vector<MeshEdge> edges_;
 
  private:
   void dropEmpty() {
-    report_.degenerate =
-        std::erase_if(corners_, [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
+    report_.degenerate = triangles_.eraseIf([this](std::size_t t) {
+      const Corners& c = corners_[t];
+      return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+    });
     const double rounding = roundingOf(points_, corners_);
-    report_.joined = joinFreePoints(points_, rounding, corners_);
-    report_.joined += joinCoincident(points_, rounding, corners_);
-    report_.slivers = takeInSlivers(points_, rounding, corners_);
-    report_.degenerate += std::erase_if(corners_, [this](const Corners& c) { return isEmptyTriangle(points_, c); });
+    report_.joined = joinFreePoints(points_, rounding, triangles_);
+    report_.joined += joinCoincident(points_, rounding, triangles_);
+    report_.slivers = takeInSlivers(points_, rounding, triangles_);
+    report_.degenerate += triangles_.eraseIf([this](std::size_t t) { return isEmptyTriangle(points_, corners_[t]); });
   }
 
   void dropDuplicates(Flange flange) {
-    const LeftOut left = leaveOutDuplicates(corners_, flange);
+    const LeftOut left = leaveOutDuplicates(triangles_, flange);
     report_.duplicates += left.duplicates;
     report_.back_to_back += left.back_to_back;
   }
@@ -183,7 +189,8 @@ RepairedMesh repaired(const MeshFile& mesh, double scale, MeshReport& report) {
   repair.run();
   report.triangles = repair.corners_.size();
   report.points = repair.points_.size();
-  return {std::move(repair.points_), std::move(repair.corners_), std::move(repair.edges_)};
+  return {std::move(repair.points_), std::move(repair.corners_), std::move(repair.edges_),
+          std::move(repair.triangles_.from)};
 }
 
 }  // namespace hapticd::importing

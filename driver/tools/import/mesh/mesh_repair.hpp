@@ -15,6 +15,7 @@ struct RepairedMesh {
   std::vector<Eigen::Vector3d> points;  ///< [m]
   std::vector<std::array<std::uint32_t, 3>> corners;
   std::vector<MeshEdge> edges;
+  std::vector<std::uint32_t> from;  ///< the triangle of the file from which each triangle comes
 };
 
 /// [main] Repairs a mesh, and writes into the report what was done.

@@ -117,8 +117,9 @@ bool isEmptyTriangle(const std::vector<Vector3d>& points, const Corners& c) {
   return !(ab.cross(ac).norm() > 1e-14 * ab.norm() * ac.norm());
 }
 
-std::size_t takeInSlivers(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
+std::size_t takeInSlivers(const std::vector<Vector3d>& points, double rounding, MeshTriangles& triangles) {
   constexpr int kMostRounds = 64;  // a sliver beside a sliver waits until that one is gone
+  TriangleCorners& corners = triangles.corners;
   std::size_t taken = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     std::vector<std::uint32_t> slivers;
@@ -133,6 +134,7 @@ std::size_t takeInSlivers(const std::vector<Vector3d>& points, double rounding, 
       if (code == kNoTriangle || changed[t] != 0 || changed[code / 4] != 0) continue;
       if (isSliver(points, corners[code / 4], rounding)) continue;
       if (!cutNeighbour(points, code, corners[t], corners[code / 4])) continue;
+      triangles.from[t] = triangles.from[code / 4];
       changed[t] = changed[code / 4] = 1;
       ++taken;
     }
@@ -141,9 +143,9 @@ std::size_t takeInSlivers(const std::vector<Vector3d>& points, double rounding, 
   return taken;
 }
 
-std::size_t joinFreePoints(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
+std::size_t joinFreePoints(const std::vector<Vector3d>& points, double rounding, MeshTriangles& triangles) {
   constexpr double kLeast = 2e-10;  // of the rounding: the numbers of smaller cells are no whole numbers
-  const std::vector<MeshEdge> edges = meshEdges(corners);
+  const std::vector<MeshEdge> edges = meshEdges(triangles.corners);
   std::vector<char> free(points.size(), 0);
   std::size_t count = 0;
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
@@ -164,11 +166,11 @@ std::size_t joinFreePoints(const std::vector<Vector3d>& points, double rounding,
     joined += number[i] != i ? 1 : 0;
   }
   if (joined == 0) return 0;
-  TriangleCorners sewn = corners;
-  for (Corners& c : sewn) c = {number[c[0]], number[c[1]], number[c[2]]};
-  std::erase_if(sewn, hasEqualCorners);
-  if (countFree(sewn) >= count) return 0;
-  corners = std::move(sewn);
+  MeshTriangles sewn = triangles;
+  for (Corners& c : sewn.corners) c = {number[c[0]], number[c[1]], number[c[2]]};
+  sewn.eraseIf([&](std::size_t t) { return hasEqualCorners(sewn.corners[t]); });
+  if (countFree(sewn.corners) >= count) return 0;
+  triangles = std::move(sewn);
   return joined;
 }
 

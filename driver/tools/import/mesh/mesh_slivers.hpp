@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh_import/mesh_edges.hpp"
+
 namespace hapticd::importing {
 
 using TriangleCorners = std::vector<std::array<std::uint32_t, 3>>;
@@ -25,11 +27,11 @@ double roundingOf(const std::vector<Eigen::Vector3d>& points, const TriangleCorn
 /// share of this edge, and cuts the neighbour across that edge in two at this corner. To leave such a triangle out
 /// would open the surface there. Triangles without such a neighbour stay.
 /// @return how many were removed
-std::size_t takeInSlivers(const std::vector<Eigen::Vector3d>& points, double rounding, TriangleCorners& corners);
+std::size_t takeInSlivers(const std::vector<Eigen::Vector3d>& points, double rounding, MeshTriangles& triangles);
 
 /// [main] Joins points of free edges that differ by no more than the given distance [m], if that leaves fewer edges
 /// free. Programs that write each triangle alone round such points in different directions. @return how many points
 /// were joined
-std::size_t joinFreePoints(const std::vector<Eigen::Vector3d>& points, double rounding, TriangleCorners& corners);
+std::size_t joinFreePoints(const std::vector<Eigen::Vector3d>& points, double rounding, MeshTriangles& triangles);
 
 }  // namespace hapticd::importing

@@ -38,6 +38,7 @@ class Words {
     return word;
   }
   void skipLine() { line_ = {}; }
+  std::string_view restOfLine() const { return line_; }  ///< after the word that was read last
   std::string_view wholeLine() const { return whole_; }
   std::size_t lineNumber() const { return number_; }
   std::string_view rest() const { return rest_; }  ///< the text after this line

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Reads OBJ, the format of Wavefront: the lines `v`, `f` and `o`. Lines of other kinds are passed over.
+/// Reads OBJ, the format of Wavefront: the lines `v`, `f`, `o`, `mtllib` and `usemtl`. Others are passed over.
 #include <map>
 
 #include "kernels/part/names.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
+#include "mesh_import/obj_materials.hpp"
 #include "mesh_import/polygons.hpp"
 #include "mesh_import/wrong_lines.hpp"
 
@@ -13,13 +14,16 @@ namespace {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
+  ObjReader(std::string_view bytes, const std::string& name, const ReadBeside& read_beside)
+      : words_(bytes), name_(name), materials_(read_beside) {}
 
   Result<MeshFile> run() {
     while (words_.nextLine()) {
       const std::string_view kind = words_.next();
       if (kind == "v") readPoint();
       if (kind == "o") object_ = plainLine();
+      if (kind == "mtllib") materials_.addLibrary(words_.restOfLine());
+      if (kind == "usemtl") materials_.use(words_.restOfLine());
       groups_ += kind == "g" ? 1 : 0;
       if ((kind == "f" || kind == "fo") && !readFace()) tell(line_);
       if (mesh_.corners.size() > kMostTriangles)
@@ -29,11 +33,13 @@ class ObjReader {
     }
     for (const Late& late : late_) {
       object_ = late.object;
+      materials_.goBackTo(late.material);
       if (!addFace(late.indices, late.line)) tell(late.line);
     }
     if (!wrong_lines_.none()) return wrong_lines_.error(name_);
     tellWhatIsDropped();
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
+    mesh_.colours = materials_.colours(mesh_.remarks);
     return std::move(mesh_);
   }
 
@@ -43,6 +49,7 @@ class ObjReader {
     std::vector<std::int64_t> indices;
     std::size_t line;
     std::string object;
+    std::uint32_t material;
   };
 
   std::string at(std::size_t line) const { return name_ + ":" + std::to_string(line) + ": "; }
@@ -85,7 +92,7 @@ class ObjReader {
       indices_.push_back(index < 0 ? index + last + 1 : index);
       if (goes_on && !words_.nextLine()) break;
     }
-    if (late) return late_.push_back({indices_, line_, object_}), true;
+    if (late) return late_.push_back({indices_, line_, object_, materials_.present()}), true;
     return addFace(indices_, line_);
   }
 
@@ -106,6 +113,7 @@ class ObjReader {
       return fail("the face has " + std::to_string(polygon.size()) + " points; expected f and at least three");
     if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
     mesh_.object.resize(mesh_.corners.size(), objectIndex());
+    materials_.coverTo(mesh_.corners.size());
     return true;
   }
 
@@ -147,6 +155,7 @@ class ObjReader {
   std::vector<std::uint32_t> points_;  ///< index of each point of the file after equal points were joined
   std::vector<std::int64_t> indices_;
   std::vector<Late> late_;
+  ObjMaterials materials_;
   std::string object_;  ///< the object to which faces belong
   std::map<std::string, std::uint32_t> object_numbers_;
   std::size_t line_ = 0, lines_ = 0, groups_ = 0;
@@ -157,8 +166,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name) {
-  return ObjReader(bytes, name).run();
+Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name, const ReadBeside& read_beside) {
+  return ObjReader(bytes, name, read_beside).run();
 }
 
 }  // namespace hapticd::importing

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "mesh_import/mesh_file.hpp"
-#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/ply_body.hpp"
+#include "mesh_import/ply_colours.hpp"
 #include "mesh_import/polygons.hpp"
 #include "mesh_import/wrong_lines.hpp"
 
@@ -14,22 +14,7 @@ namespace hapticd::importing {
 namespace {
 
 using Eigen::Vector3d;
-
-enum class Type : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble, kUnknown };
-
-Type typeOf(std::string_view word) {
-  constexpr std::string_view kNames[][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
-                                            {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
-                                            {"float", "float32"}, {"double", "float64"}};
-  for (std::size_t i = 0; i < std::size(kNames); ++i)
-    if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<Type>(i);
-  return Type::kUnknown;
-}
-
-std::size_t sizeOf(Type type) {
-  constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8, 0};
-  return kSizes[static_cast<std::size_t>(type)];
-}
+using ply::Body, ply::Lines, ply::Type, ply::typeOf;
 
 struct Property {
   std::string_view name;
@@ -40,101 +25,6 @@ struct Element {
   std::string_view name;
   std::size_t count = 0;
   std::vector<Property> properties;
-};
-
-/// How the values of a text are divided into items.
-enum class Lines : std::uint8_t {
-  kOneAnItem,  ///< each item has a line of its own; more values than the header states are passed over
-  kAnywhere    ///< line breaks do not count
-};
-
-/// Reads the values of the body one after another.
-class Body {
- public:
-  enum class Form : std::uint8_t { kText, kLittle, kBig };
-  Body(std::string_view bytes, Form form, Lines lines) : bytes_(bytes), words_(bytes), form_(form), lines_(lines) {}
-
-  /// Goes to the next item. @return false if the file has ended
-  bool nextItem() {
-    if (form_ == Form::kText && lines_ == Lines::kOneAnItem) word_ = nextWord();
-    ended_ = form_ == Form::kText && lines_ == Lines::kOneAnItem && word_.empty();
-    return !ended_;
-  }
-
-  std::optional<double> next(Type type) {
-    if (form_ == Form::kText) {
-      if (lines_ == Lines::kAnywhere) word_ = nextWord();
-      ended_ = lines_ == Lines::kAnywhere && word_.empty();
-      last_ = word_;
-      if (lines_ == Lines::kOneAnItem) word_ = words_.next();
-      return anyNumber(last_);
-    }
-    const std::size_t size = sizeOf(type);
-    ended_ = bytes_.size() - place_ < size;
-    if (ended_) return {};
-    std::array<char, 8> raw{};
-    for (std::size_t i = 0; i < size; ++i) raw[form_ == Form::kBig ? size - 1 - i : i] = bytes_[place_ + i];
-    place_ += size;
-    return decode(type, raw);
-  }
-
-  /// Passes over the rest of the line if each item has its own line. @return true if it held a value
-  bool passRest() {
-    const bool more = form_ == Form::kText && lines_ == Lines::kOneAnItem && !word_.empty();
-    if (more) words_.skipLine();
-    word_ = {};
-    return more;
-  }
-  /// True if nothing but blanks is left of a text.
-  bool atEnd() { return form_ != Form::kText || nextWord().empty(); }
-  bool isText() const { return form_ == Form::kText; }
-  bool ended() const { return ended_; }  ///< true if the last value was missing because the file has ended
-  std::string_view lastWord() const { return last_; }  ///< the last value of a text; empty if the line had no more
-  std::size_t lineNumber() const { return form_ == Form::kText ? words_.lineNumber() : 0; }
-
- private:
-  /// Returns the next word of this line or a later one.
-  std::string_view nextWord() {
-    std::string_view word = words_.next();
-    while (word.empty() && words_.nextLine()) word = words_.next();
-    return word;
-  }
-  template <class T>
-  static double as(const std::array<char, 8>& raw) {
-    T value;
-    std::memcpy(&value, raw.data(), sizeof value);
-    return static_cast<double>(value);
-  }
-  static std::optional<double> decode(Type type, const std::array<char, 8>& raw) {
-    switch (type) {
-      case Type::kInt8:
-        return as<std::int8_t>(raw);
-      case Type::kUint8:
-        return as<std::uint8_t>(raw);
-      case Type::kInt16:
-        return as<std::int16_t>(raw);
-      case Type::kUint16:
-        return as<std::uint16_t>(raw);
-      case Type::kInt32:
-        return as<std::int32_t>(raw);
-      case Type::kUint32:
-        return as<std::uint32_t>(raw);
-      case Type::kFloat:
-        return as<float>(raw);
-      case Type::kDouble:
-        return as<double>(raw);
-      default:
-        return {};
-    }
-  }
-
-  std::string_view bytes_;
-  std::size_t place_ = 0;
-  Words words_;
-  std::string_view word_, last_;  ///< the word to read next, if each item has its own line; the word read last
-  Form form_;
-  Lines lines_;
-  bool ended_ = false;
 };
 
 constexpr const char* kTooMany = "the file has more than 20,000,000 triangles";
@@ -160,6 +50,7 @@ class Reader {
     if (lines_ == Lines::kAnywhere)
       mesh_.remarks.emplace_back("lines and elements do not agree; the values were read one after another");
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
+    mesh_.colours = colours_.take(mesh_.corners.size());
     return std::move(mesh_);
   }
   /// True if the body is text, so that another division of its lines may fit.
@@ -178,7 +69,7 @@ class Reader {
       wrong_lines_.add(body.lineNumber(), where(element, i, body) + wrong_);
       const bool own_lines = body.isText() && lines_ == Lines::kOneAnItem;
       if (body.ended() || !own_lines || mesh_.corners.size() > kMostTriangles) return false;
-      if (element.name == "vertex" && points_.size() == i) points_.push_back(weld_.at(Vector3d::Zero()));  // it counts
+      if (element.name == "vertex" && points_.size() == i) addPoint(Vector3d::Zero());  // it counts
       body.passRest();
     }
     return true;
@@ -283,6 +174,8 @@ class Reader {
 
   bool readItem(const Element& element, Body& body) {
     Vector3d p = Vector3d::Zero();
+    const std::size_t first = mesh_.corners.size();
+    colours_.beginItem();
     for (const Property& property : element.properties) {
       if (property.count != Type::kUnknown) {
         const bool corners = property.name == "vertex_indices" || property.name == "vertex_index";
@@ -295,11 +188,18 @@ class Reader {
       if (!value) return failAt(body, "the value of the property " + std::string(property.name));
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         p[property.name[0] - 'x'] = *value;
+      colours_.see(property.name, property.type, *value);
     }
+    if (element.name == "face" || element.name == "tristrips") colours_.endFace(first, mesh_.corners.size());
     if (element.name != "vertex") return true;
     if (!p.allFinite()) return fail("a coordinate is not a finite number");
-    points_.push_back(weld_.at(p));
+    addPoint(p);
     return true;
+  }
+
+  void addPoint(const Vector3d& p) {
+    points_.push_back(weld_.at(p));
+    colours_.endVertex();
   }
 
   /// Reads a list into `list_`, or passes over it.
@@ -328,18 +228,21 @@ class Reader {
   }
 
   bool addPolygon() {
+    const std::size_t first = mesh_.corners.size();
     std::vector<std::uint32_t> polygon;
     for (const double index : list_) {
       if (!isPoint(index)) return false;
       polygon.push_back(points_[static_cast<std::size_t>(index)]);
     }
     if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
+    colours_.paint(list_, points_, mesh_.corners, first);
     return true;
   }
 
   /// Adds the triangles of strips, each of which uses the last two points again, in turns with one and the other sense.
   /// A -1 begins a new strip.
   bool addStrip() {
+    const std::size_t first = mesh_.corners.size();
     std::size_t begin = 0;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (list_[i] == -1) {
@@ -353,6 +256,7 @@ class Reader {
       mesh_.corners.push_back({at(i - 2 + odd), at(i - 1 - odd), at(i)});
       if (mesh_.corners.size() > kMostTriangles) return fail(kTooMany);
     }
+    colours_.paint(list_, points_, mesh_.corners, first);
     return true;
   }
 
@@ -366,6 +270,7 @@ class Reader {
   Weld weld_{mesh_.points};
   std::vector<std::uint32_t> points_;  ///< index of each vertex after equal points were joined
   std::vector<double> list_;
+  ply::Colours colours_;
   std::size_t longer_ = 0;  ///< number of lines with more values than the header states
   std::string wrong_;
   WrongLines wrong_lines_;

@@ -49,6 +49,25 @@ TEST(PartMesh, AFaceHasItsOwnColourBeforeThatOfTheInstanceAndOfTheBody) {
   EXPECT_NEAR(found[kBlue | kOpaque] + found[kGreen | kOpaque], 6.8e-3, 1e-8);
 }
 
+TEST(PartMesh, ACornerOfATriangleHasItsOwnColour) {
+  brep::Part part;
+  part.points = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}, {1.1, 0, 0}, {1, 0.1, 0}};
+  part.triangles = {{{0, 1, 2}}, {{3, 4, 5}}};
+  part.colours = {{{kRed | kOpaque, 0, kBlue | kOpaque}}, {}};
+  part.bodies.resize(2);
+  part.instances.resize(2);
+  for (std::uint32_t b = 0; b < 2; ++b) {
+    part.bodies[b].kind = brep::BodyKind::kMesh;
+    part.bodies[b].first_point = 3 * b, part.bodies[b].point_count = 3;
+    part.bodies[b].first_triangle = b, part.bodies[b].triangle_count = 1;
+    part.instances[b].body = b;
+  }
+  part.instances[1].colour = kGreen;
+  const Mesh mesh = tessellate(brep::Model(part), 1e-4);
+  const std::uint32_t red = kRed | kOpaque, green = kGreen | kOpaque, blue = kBlue | kOpaque;
+  EXPECT_EQ(mesh.colours, (std::vector<std::uint32_t>{red, 0, blue, green, green, green}));
+}
+
 TEST(PartMesh, WhatHasNoColourIsToldFromBlack) {
   brep::Part part = plate();
   part.faces[0].colour = kOpaque;

@@ -47,8 +47,9 @@ export class Events {
     this.period = 1 / (about.rate_hz || 1000);
     const columns = about.columns ?? {}, readers = (stream, names) => Object.fromEntries(names.map((n) => [n, reader(columns[stream] ?? [], n)]));
     this.read = readers('orders', ['tick', 'kind', 'target', 'value']);
-    this.event = readers('events', ['t', 'kind', 'model', 'probe', 'code', 'value']);
-    this.mark = readers('marks', ['t', 'text']);
+    this.event = readers('events', ['tick', 't', 'kind', 'model', 'probe', 'code', 'value']);
+    this.mark = readers('marks', ['t', 'model', 'text']);
+    this.later = []; // models that came during a recording, in the order of their ticks
     this.kinds = about.events ?? [];
     this.told = 'events' in columns; // older recordings have no stream of events
     this.faults = [];
@@ -68,15 +69,17 @@ export class Events {
     this.onEvent?.(t, kind);
   }
 
-  name(model) { return this.names[model] ?? `model ${model}`; }
+  name(model, tick = Infinity) {
+    return this.later.findLast((one) => one.number === model && one.tick <= tick)?.name ?? this.names[model] ?? `model ${model}`;
+  }
 
   orders(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const at = i * rowBytes, kind = this.read.kind(view, at), target = this.read.target(view, at);
+      const at = i * rowBytes, kind = this.read.kind(view, at), target = this.read.target(view, at), tick = this.read.tick(view, at);
       if (this.told && kToldAsEvents.has(kind)) continue;
-      const whose = kOfArm.has(kind) ? this.devices[target] ?? `arm ${target}` : this.name(target);
+      const whose = kOfArm.has(kind) ? this.devices[target] ?? `arm ${target}` : this.name(target, tick);
       const value = kind === 4 ? ` to ${Number(this.read.value(view, at).toPrecision(4))}` : '';
-      this.add(this.read.tick(view, at) * this.period, kind === 11 ? 'fault' : 'order', `${whose}: ${kOrders[kind] ?? `order ${kind}`}${value}`);
+      this.add(tick * this.period, kind === 11 ? 'fault' : 'order', `${whose}: ${kOrders[kind] ?? `order ${kind}`}${value}`);
     }
   }
 
@@ -86,13 +89,17 @@ export class Events {
       const name = this.kinds[e.kind] ?? `event ${e.kind}`;
       if (name === 'mark') continue; // marks() tells it
       const said = kEvents[name] ?? {sort: 'order', text: () => name.replaceAll('_', ' ')};
-      const whose = e.model >= 0 ? this.name(e.model) : this.devices[e.probe];
+      const whose = e.model >= 0 ? this.name(e.model, e.tick) : this.devices[e.probe];
       this.add(e.t, name === 'fault' && e.code === kHeld ? 'order' : said.sort, `${whose ? `${whose}: ` : ''}${said.text(e)}`);
     }
   }
 
   marks(view, count, rowBytes) {
-    for (let i = 0; i < count; ++i) this.add(this.mark.t(view, i * rowBytes), 'mark', this.mark.text(view, i * rowBytes));
+    for (let i = 0; i < count; ++i) {
+      const at = i * rowBytes;
+      if (this.mark.model(view, at) >= 0) continue; // it describes a model
+      this.add(this.mark.t(view, at), 'mark', this.mark.text(view, at));
+    }
   }
 
   /** For a recording without a stream of events: finds events in the present rows, namely faults that began or ended

@@ -192,6 +192,7 @@ class Page {
         this.drawn.delete(name);
         this.features.clear(); // another part may be added under the same name
       }
+    this.events.later = list.later ?? [];
     for (const model of models) {
       this.events.names[model.index] = model.name;
       // A model that has moved and now rests has no rows any more, so its pose comes from the list.
@@ -262,7 +263,7 @@ class Page {
    * farther. */
   #showFoot(contacts) {
     const deepest = contacts.reduce((a, b) => (b.depth > (a?.depth ?? 0) ? b : a), null);
-    const name = deepest ? this.features.name(this.events.names[deepest.model], deepest.feature) : '';
+    const name = deepest ? this.features.name(this.events.name(deepest.model, this.now.tick.tick), deepest.feature) : '';
     $('foot').textContent = [name, endText(this.now.arms)].filter((text) => text !== '').join(' · ');
     $('foot').hidden = $('foot').textContent === '';
   }

@@ -271,6 +271,19 @@ TEST(CoarseMesh, ColoursDoNotMix) {
   EXPECT_NEAR(green, 0.005, 5e-4);
 }
 
+TEST(CoarseMesh, AScanWithAColourAtEachPointStaysSmooth) {
+  Mesh plate;
+  addGrid(plate, 100, [](double u, double v) { return Vector3d(0.1 * u, 0.1 * v, 0); });
+  const auto redAt = [](double x) { return static_cast<uint32_t>(std::lround(2550 * x)); };
+  for (size_t i = 0; i < plate.indices.size(); ++i) plate.colours.push_back(0xff000000u | redAt(plate.xyz[3 * i]));
+  const CoarseMesh coarse = reduced(plate, 500);
+  const hsp_mesh drawn = coarse.view();
+  ASSERT_EQ(coarse.colours.size(), drawn.vertex_count);
+  EXPECT_LT(drawn.vertex_count, 2 * drawn.triangle_count) << "corners share vertices";
+  for (uint32_t i = 0; i < drawn.vertex_count; ++i)
+    EXPECT_NEAR(drawn.colours[i] & 0xffu, redAt(placeOf(drawn, i).x()), 40) << i;
+}
+
 TEST(CoarseMesh, EnoughRoomChangesNothing) {
   const Mesh ball = bumpyBall(30);
   const CoarseMesh coarse = reduced(ball, ball.indices.size() / 3);
