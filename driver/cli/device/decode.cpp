@@ -184,9 +184,10 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
 std::optional<std::string> tableOf(const DecodeArguments& options) {
   const auto text = contentOf(options.input);
   if (!text)
-    return (void)fail(kBadInput, options.input + ": " + text.error() +
-                                     "\n  numbers may also come on standard input: echo 0.1,0,0 | hapticd device encode " +
-                                     options.file),
+    return (void)fail(kBadInput,
+                      options.input + ": " + text.error() +
+                          "\n  numbers may also come on standard input: echo 0.1,0,0 | hapticd device encode " +
+                          options.file),
            std::nullopt;
   if (const std::string line = firstLine(*text); lacksCommas(line))
     return (void)fail(kBadInput, options.input + ": \"" + line.substr(0, 40) +
