@@ -122,9 +122,9 @@ class Claim {
   // asked_: a parameter was set before this step. jumps_: force and torque may jump in this step
   bool asked_ = false, jumps_ = false;
   double passes_ = kPasses, turns_ = kTurns, asked_passes_ = kAsked;
-  Eigen::Vector3d passed_ = Eigen::Vector3d::Zero(),
-                  passed_torque_ = Eigen::Vector3d::Zero();  // [N], [N m] of the last pass
-  double excused_ = 0, finds_anew_ = 0;                      // [s] time that is left of kExcused, and of kFindsAnew
+  double excused_ = 0, finds_anew_ = 0;  // [s] time that is left of kExcused, and of kFindsAnew
+  // [N], [N m] the force and the torque that the last pass let through
+  Eigen::Vector3d passed_ = Eigen::Vector3d::Zero(), passed_torque_ = Eigen::Vector3d::Zero();
   /// [N] The force that motion explains, world frame. The force that check() returns differs from this force by at most
   /// one jump.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
