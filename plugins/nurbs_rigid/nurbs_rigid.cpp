@@ -149,16 +149,21 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
   std::vector<Extent> extents;
   spline::SurfacePoint E;
   for (int surface = 0; surface < model.surfaceCount(); ++surface) {
-    Extent extent;
-    extent.lo = model.patch(model.firstPatch(surface)).lo;
-    Eigen::Array2d hi = model.patch(model.firstPatch(surface)).hi;
-    for (int i = model.firstPatch(surface); i < model.lastPatch(surface); ++i) {
+    Extent extent{{0, 0}, {1, 1}, {1, 1}};
+    const int first = model.firstPatch(surface), last = model.lastPatch(surface);
+    if (first == last) {  // a surface without area is never touched
+      extents.push_back(extent);
+      continue;
+    }
+    extent.lo = model.patch(first).lo;
+    Eigen::Array2d hi = model.patch(first).hi;
+    for (int i = first; i < last; ++i) {
       extent.lo = extent.lo.min(model.patch(i).lo);
       hi = hi.max(model.patch(i).hi);
     }
     extent.range = hi - extent.lo;
     extent.length.setZero();
-    for (int i = model.firstPatch(surface); i < model.lastPatch(surface); ++i) {
+    for (int i = first; i < last; ++i) {
       const trace::Patch& patch = model.patch(i);
       const double share = ((patch.hi - patch.lo) / extent.range).prod() / (kSamples * kSamples);
       for (int k = 0; k < kSamples * kSamples; ++k) {

@@ -57,18 +57,6 @@ void warnOfSize(double size, const Path& at, Problems& odd) {
                         size, size, size / 1000));
 }
 
-/// True if all control points lie in one place or on one line.
-bool hasNoArea(const SurfaceData& surface) {
-  constexpr double kFlat = 1e-9;
-  const Vector3d& first = surface.points.front();
-  Vector3d far = Vector3d::Zero();
-  for (const Vector3d& point : surface.points)
-    if ((point - first).norm() > far.norm()) far = point - first;
-  return std::all_of(surface.points.begin(), surface.points.end(), [&](const Vector3d& point) {
-    return (point - first).cross(far).norm() <= kFlat * far.squaredNorm();
-  });
-}
-
 void warnOfNames(const ModelFile& file, Problems& odd) {
   std::map<std::string, std::size_t> first;
   for (std::size_t i = 0; i < file.surfaces.size(); ++i) {
@@ -294,7 +282,7 @@ namespace {
 
 /// Judges one surface by itself.
 void warnOfSurface(const SurfaceData& surface, std::size_t index, Problems& odd) {
-  if (hasNoArea(surface))
+  if (spline::hasNoArea(surface))
     odd.add(surfaceAt(index, "points"),
             "all points lie in one place or on one line, so the surface has no area and cannot be felt");
   warnOfOrder(surface, index, odd);

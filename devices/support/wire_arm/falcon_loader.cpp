@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
+#include "base/regular_file.hpp"
 #include "codec/framer.hpp"
 
 namespace hapticd::wire_arm {
@@ -115,12 +114,10 @@ bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
 }  // namespace
 
 Result<std::vector<uint8_t>> readFalconFirmware(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{file + ": cannot be read; expected the Falcon's firmware image"};
-  std::vector<uint8_t> bytes(std::istreambuf_iterator<char>(in), {});
-  if (bytes.empty() || bytes.size() > kLargestFirmware)
-    return Error{file + ": " + std::to_string(bytes.size()) + " bytes, expected a firmware image of up to 1 MiB"};
-  return bytes;
+  const auto image = readRegular(file, kLargestFirmware);  // no device either: /dev/zero never ends
+  if (!image) return Error{file + ": " + image.error() + "; expected the Falcon's firmware image"};
+  if (image->empty()) return Error{file + ": is empty, expected the Falcon's firmware image"};
+  return std::vector<uint8_t>(image->begin(), image->end());
 }
 
 Result<void> loadFalcon(Transport& transport, const codec::Wire& wire, const std::vector<uint8_t>& firmware) {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd device decode` and `encode`: apply the wire format of a device file to bytes, without the arm.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -17,6 +11,7 @@
 #include "capture/row_range.hpp"
 #include "capture/saturation.hpp"
 #include "capture/time_series_hint.hpp"
+#include "cli/device/content.hpp"
 #include "cli/device/decoded_table.hpp"
 #include "cli/device/encode_columns.hpp"
 #include "cli/device/file.hpp"
@@ -70,13 +65,6 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   return std::nullopt;
 }
 
-std::optional<std::string> contentOf(const std::string& file) {
-  if (file == "-") return std::string(std::istreambuf_iterator<char>(std::cin), {});
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(in), {});
-}
-
 int writeOut(const std::string& file, const std::string& text) {
   std::FILE* out = file == "-" ? stdout : std::fopen(file.c_str(), "wb");
   const bool written = out != nullptr && std::fwrite(text.data(), 1, text.size(), out) == text.size();
@@ -89,7 +77,7 @@ int decode(const DecodeArguments& options) {
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
   const auto bytes = contentOf(options.input);
-  if (!bytes) return fail(kBadInput, options.input + ": cannot be read, expected a capture");
+  if (!bytes) return fail(kBadInput, options.input + ": " + bytes.error());
   const auto form = options.hex ? capture::Form::kHex : options.raw ? capture::Form::kRaw : capture::Form::kGuess;
   const auto taken = capture::readCapture(*bytes, form);
   if (!taken) return fail(kBadInput, options.input + ": " + taken.error());
@@ -196,10 +184,10 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
 std::optional<std::string> tableOf(const DecodeArguments& options) {
   const auto text = contentOf(options.input);
   if (!text)
-    return (void)fail(kBadInput, options.input +
-                                     ": cannot be read, expected a CSV file; numbers come on standard input: echo "
-                                     "0.1,0,0 | hapticd device encode " +
-                                     options.file),
+    return (void)fail(kBadInput,
+                      options.input + ": " + text.error() +
+                          "\n  numbers may also come on standard input: echo 0.1,0,0 | hapticd device encode " +
+                          options.file),
            std::nullopt;
   if (const std::string line = firstLine(*text); lacksCommas(line))
     return (void)fail(kBadInput, options.input + ": \"" + line.substr(0, 40) +

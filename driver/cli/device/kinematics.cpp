@@ -3,9 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -13,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/device/content.hpp"
 #include "cli/device/file.hpp"
 #include "cli/device/joint_angles.hpp"
 #include "cli/support/command.hpp"
@@ -29,7 +27,6 @@ struct KinematicsArguments {
   std::string file, joints, out = "-";
 };
 
-constexpr size_t kMaxCsvBytes = 256u << 20;
 /// Columns of the pose of the tip; they follow the columns of the joints.
 constexpr const char* kTipColumns = ",x,y,z,qw,qx,qy,qz";
 
@@ -79,21 +76,10 @@ Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   document::Problems problems;
   document::CsvRules form;
   form.headers = {q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"};
-  const bool input = file == "-";
-  std::string text;
-  if (input) {
-    text.assign(std::istreambuf_iterator<char>(std::cin), {});
-  } else {
-    std::ifstream in(file, std::ios::binary);
-    text.assign(std::istreambuf_iterator<char>(in), {});
-  }
-  if (const auto decoded = fromDecoded(text, joints)) {
-    auto table = document::parseCsv(*decoded, file, form, problems);
-    if (!table) return Error{document::textOf(problems)};
-    return std::move(*table);
-  }
-  auto table =
-      input ? document::parseCsv(text, "-", form, problems) : document::readCsv(file, kMaxCsvBytes, form, problems);
+  const auto text = contentOf(file);
+  if (!text) return Error{file + ": " + text.error()};
+  const auto decoded = fromDecoded(*text, joints);
+  auto table = document::parseCsv(decoded ? *decoded : *text, file, form, problems);
   if (!table) return Error{document::textOf(problems)};
   return std::move(*table);
 }

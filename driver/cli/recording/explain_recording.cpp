@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <map>
 
+#include "base/file_beginning.hpp"
 #include "cli/recording/joint_ranges.hpp"
 #include "cli/recording/recorded_marks.hpp"
 #include "cli/recording/recorded_orders.hpp"
@@ -82,9 +82,8 @@ void printLines(const char* title, const std::vector<std::string>& lines, const 
 }  // namespace
 
 bool isRecording(const std::string& file) {
-  char first[4] = {};
-  std::ifstream in(file, std::ios::binary);
-  return in.read(first, sizeof first) && std::string(first, sizeof first) == "\x89HDF";
+  const auto first = readBeginning(file, 4);  // it does not wait for the writer of a pipe
+  return first && *first == "\x89HDF";
 }
 
 int explainRecording(const std::string& file) {

@@ -138,6 +138,7 @@ int conclude(const RunOutcome& outcome, servo::Runner& runner) {
       return fail(kFailed, drawn.error());
   for (const auto& [what, file] : {std::pair("report", &outcome.report), std::pair("picture", &outcome.picture)})
     if (!file->empty()) std::printf("  %-8s  %s\n", what, file->c_str());
+  if (!runner.recorded()) return fail(kFailed, runner.recorded().error());
   return faults.empty() ? kWorked : kFailed;
 }
 

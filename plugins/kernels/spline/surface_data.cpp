@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/spline/surface_data.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -119,6 +120,23 @@ void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vecto
   checkPoints(points, what, raise);
   checkWeightCount(weights.size(), points.size(), what, raise);
   checkWeights(weights, what, raise);
+}
+
+bool hasNoArea(const SurfaceData& surface) {
+  constexpr double kFlat = 1e-9;  // ratio of width and length
+  const Eigen::Vector3d first = surface.points.front();
+  Eigen::Vector3d far = Eigen::Vector3d::Zero();
+  double size = 0;  // [m] lengths are divided by it, because squares of large and of tiny lengths mean nothing
+  for (const Eigen::Vector3d& point : surface.points)
+    if (const double way = (point - first).cwiseAbs().maxCoeff(); way > size) {
+      size = way;
+      far = point - first;
+    }
+  if (!(size > 0)) return true;
+  far /= size;
+  return std::all_of(surface.points.begin(), surface.points.end(), [&](const Eigen::Vector3d& point) {
+    return ((point - first) / size).cross(far).norm() <= kFlat * far.squaredNorm();
+  });
 }
 
 void validate(const SurfaceData& data) {

@@ -60,6 +60,9 @@ void validateKnots(const std::vector<double>& knots, int degree, std::size_t cou
 void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights,
                     const std::string& what);
 
+/// [main] True if all control points lie in one place or on one line. Such a surface has no normal.
+bool hasNoArea(const SurfaceData& surface);
+
 /// The parts of a surface, each of which can be checked although another one could not be read.
 struct SoundParts {
   bool degree = true, points = true, weights = true;

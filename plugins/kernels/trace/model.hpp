@@ -71,7 +71,7 @@ class Model {
   int surfaceCount() const noexcept { return static_cast<int>(first_patch_.size()) - 1; }
   int patchCount() const noexcept { return static_cast<int>(patches_.size()); }
   const Patch& patch(int index) const noexcept { return patches_[static_cast<std::size_t>(index)]; }
-  /// [any] The patches of a surface are those from firstPatch() to lastPatch() - 1.
+  /// [any] The patches of a surface are those from firstPatch() to lastPatch() - 1. A surface without area has none.
   int firstPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface)]; }
   int lastPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface) + 1]; }
 

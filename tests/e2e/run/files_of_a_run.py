@@ -5,6 +5,7 @@ Usage: files_of_a_run.py HAPTICD SOURCE_DIR     prints one line per check; exit 
 """
 import json
 import os
+import resource
 import stat
 import subprocess
 import sys
@@ -38,6 +39,19 @@ def special(folder):
         code, told = hapticd("run", *QUICK, what, full)
         check(f"{what}: a full disk is told", code == 1 and "No space left" in told, (code, told))
     check("and the link is still one", os.path.islink(full) and sorted(os.listdir(folder)) == ["full", "pipe"], os.listdir(folder))
+
+
+def fullDisk(folder):
+    """A recording that cannot grow on costs neither the summary nor the report."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4 << 20, 4 << 20))
+    record, report = os.path.join(folder, "run.h5"), os.path.join(folder, "report.json")
+    done = subprocess.run([HAPTICD, "run", SCENE, "--virtual-time", "--for", "20", "--record", record, "--report", report],
+                          capture_output=True, text=True, timeout=300, preexec_fn=limit, restore_signals=False)
+    check("a recording on a full disk is told", done.returncode == 1 and "ends with its last complete row" in done.stderr, done)
+    check("its run has a summary", "20000 ticks" in done.stdout, done)
+    check("and a report", os.path.exists(report) and json.load(open(report))["ticks"] == 20000, os.listdir(folder))
+    code, told = hapticd("replay", record)
+    check("what was recorded replays", code == 0 and "every bit is the same" in told, (code, told))
 
 
 def same(folder):
@@ -95,7 +109,7 @@ def noRuntimeFolder(folder):
         os.remove(own)
 
 
-for case in (special, same, nothing, noStateFolder, noRuntimeFolder):
+for case in (special, fullDisk, same, nothing, noStateFolder, noRuntimeFolder):
     with tempfile.TemporaryDirectory() as scratch:
         case(scratch)
 finish()

@@ -31,6 +31,7 @@ Vector3d Claim::check(const ClaimStep& step, const ClaimBounds& bounds, double d
   if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
     let *= most / std::sqrt(square);
   passes_ = std::min(kPasses, passes_ + kPassesPerSecond * dt);
+  turns_ = std::min(kTurns, turns_ + kTurnsPerSecond * dt);
   asked_passes_ = std::min(kAsked, asked_passes_ + kAskedPerSecond * dt);
   excused_ -= dt;
   finds_anew_ -= dt;
@@ -117,7 +118,14 @@ double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
 bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
   if ((step.out & HSP_OUT_TRACED) == 0 || passes_ < 1) return false;
   if (traced_ && !(finds_anew_ > 0) && step.normal.dot(normal_) > std::cos(kEdge)) return false;
+  const bool turns = step.force.dot(passed_) < 0 || step.torque.dot(passed_torque_) < 0;
+  if (turns && !step.former) {
+    if (turns_ < 1) return false;
+    turns_ -= 1;
+  }
   passes_ -= 1;
+  passed_ = step.force;
+  passed_torque_ = step.torque;
   return true;
 }
 

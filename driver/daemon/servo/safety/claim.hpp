@@ -58,6 +58,9 @@ class Claim {
   /// The force may change by any amount if a surface is newly found under the probe, or if the foot point goes over an
   /// edge. kPasses such changes may come in a row. After that, kPassesPerSecond of them are allowed per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
+  /// Of these changes, so many may come in a row, and then so many per second, that push against the one before: a
+  /// surface rests, and a hand comes from one side of it to the other no more often.
+  static constexpr double kTurns = 2, kTurnsPerSecond = 3;
   /// [rad] if the normal turns by more than this in one step, the foot point went over an edge
   static constexpr double kEdge = 0.1;
   /// if a change is smaller than this share of the change that the stiffness explains, the other checks are skipped
@@ -118,8 +121,10 @@ class Claim {
   bool torque_known_ = false;
   // asked_: a parameter was set before this step. jumps_: force and torque may jump in this step
   bool asked_ = false, jumps_ = false;
-  double passes_ = kPasses, asked_passes_ = kAsked;
+  double passes_ = kPasses, turns_ = kTurns, asked_passes_ = kAsked;
   double excused_ = 0, finds_anew_ = 0;  // [s] time that is left of kExcused, and of kFindsAnew
+  // [N], [N m] the force and the torque that the last pass let through
+  Eigen::Vector3d passed_ = Eigen::Vector3d::Zero(), passed_torque_ = Eigen::Vector3d::Zero();
   /// [N] The force that motion explains, world frame. The force that check() returns differs from this force by at most
   /// one jump.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();

@@ -120,8 +120,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   }
   guard_.reset();
   resident_bytes_ = os::residentBytes();
-  if (recorder_)
-    if (auto recorded = recorder_->finish(); !recorded && done) done = recorded;
+  if (recorder_) recorded_ = recorder_->finish();
   return done;
 }
 

@@ -111,6 +111,8 @@ class Runner {
   const Arms& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
   const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr if there is no recording
+  /// [main] After run(): an error if the recording could not be written. The run itself went on without it.
+  const Result<void>& recorded() const { return recorded_; }
 
   /// Messages for the user about real-time rights that the run did not get.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -158,6 +160,7 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
+  Result<void> recorded_;
   /// nullptr if no arm needs a guard, or if no arm can be switched off by one
   std::unique_ptr<watch::GuardProcess> guard_;
   uint32_t guards_ended_ = 0;

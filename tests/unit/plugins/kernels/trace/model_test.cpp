@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "hand.hpp"
 #include "kernels/trace/box_tree.hpp"
 #include "kernels/trace/newton.hpp"
 #include "shapes.hpp"
@@ -115,6 +116,24 @@ TEST(Model, WarnsOfNeighboursWithOppositeOutsides) {
 
 TEST(Model, AnEmptyModelIsRefused) {
   EXPECT_THROW(Model({}), std::invalid_argument);
+}
+
+/// A surface whose points lie in one place or on one line has no normal: a hand was pulled to it from anywhere.
+TEST(Model, ASurfaceWithoutAreaIsNotFelt) {
+  for (const Vector3d& end : {Vector3d(0, 0, 0.1), Vector3d(0.02, 0.03, 0.15)}) {
+    const spline::SurfaceData line = flat({0, 0, 0.1}, {0, 0, 0.1}, end);
+    const spline::SurfaceData floor = flat({-0.1, -0.1, 0}, {0.1, -0.1, 0}, {-0.1, 0.1, 0});
+    EXPECT_THROW(Model({line}), std::invalid_argument);
+    const Model model({line, floor}), alone({floor});
+    EXPECT_EQ(model.surfaceCount(), 2);
+    Hand hand{model}, truth{alone};
+    for (int i = 0; i < 1000; ++i) {  // round the line, and into the floor
+      const Vector3d p = end + Vector3d(0.02 * std::cos(0.05 * i), 0.02 * std::sin(0.05 * i), -1.7e-4 * i);
+      const Foot foot = hand.at(p), expected = truth.at(p);
+      ASSERT_EQ(foot.surface, contact::found(expected) ? 1 : -1);
+      ASSERT_EQ(foot.depth, expected.depth) << i;
+    }
+  }
 }
 
 TEST(Model, NotANumberIsNearNothing) {

@@ -23,6 +23,7 @@ class Reference {
     const bool beyond = step.max_force > 0 && asked > step.max_force;
     Vector3d let = beyond ? Vector3d(step.force * (step.max_force / asked)) : step.force;
     passes_ = std::min(Claim::kPasses, passes_ + Claim::kPassesPerSecond * dt);
+    turns_ = std::min(Claim::kTurns, turns_ + Claim::kTurnsPerSecond * dt);
     finds_anew_ -= dt;
     held = false;
     Vector3d from = let;
@@ -78,13 +79,17 @@ class Reference {
     const bool traced = (step.out & HSP_OUT_TRACED) != 0, was = (last_.out & HSP_OUT_TRACED) != 0;
     if (!traced || passes_ < 1) return false;
     if (was && finds_anew_ <= 0 && step.normal.dot(last_.normal) > std::cos(Claim::kEdge)) return false;
+    const double turn = step.force.dot(passed_) < 0 ? 1 : 0;
+    if (turn > turns_) return false;
+    turns_ -= turn;
     passes_ -= 1;
+    passed_ = step.force;
     return true;
   }
 
   bool known_ = false;
-  double passes_ = Claim::kPasses, finds_anew_ = 0;
-  Vector3d explained_ = Vector3d::Zero();
+  double passes_ = Claim::kPasses, turns_ = Claim::kTurns, finds_anew_ = 0;
+  Vector3d explained_ = Vector3d::Zero(), passed_ = Vector3d::Zero();
   ClaimStep last_;
 };
 

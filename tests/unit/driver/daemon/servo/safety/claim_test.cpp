@@ -162,7 +162,10 @@ TEST(Claim, AFootMayGoOverAnEdgeThreeTimesAndThenTwentyTimesASecond) {
   Rested edge;
   int passed = 0;
   for (int i = 0; i < 1000; ++i) {
-    edge.next(traced(i % 2 == 0 ? 1 : -1));
+    ClaimStep step = traced(1);
+    step.normal = i % 2 == 0 ? Vector3d::UnitX() : Vector3d::UnitY();
+    step.force = 8 * step.normal;
+    edge.next(step);
     passed += edge.held ? 0 : 1;
   }
   EXPECT_NEAR(passed, Claim::kPasses + Claim::kPassesPerSecond, 1.1);
@@ -188,6 +191,35 @@ TEST(Claim, AFootMayGoOverAnEdgeThreeTimesAndThenTwentyTimesASecond) {
   hidden.out = 0;
   untraced.next(hidden);
   EXPECT_TRUE(untraced.held) << "what is not traced has no edges";
+}
+
+/// A plate that turns round again and again, at any pace, with a pause or without: it pushed with 8 N for ever at 20
+/// turns a second, and for 0.1 s at 50. Each time of its force is counted until three ticks are held back.
+TEST(Claim, AForceThatTurnsRoundAgainAndAgainIsHeldBack) {
+  for (const int period : {5, 20, 40, 60, 100, 200})  // [ms] from turn to turn
+    for (const int pause : {0, 2}) {
+      Rested plate;
+      int felt = 0, held = 0;
+      for (int i = 0; i < 5000 && held < 3; ++i) {
+        const bool rests = i % period < pause;
+        const Vector3d let = plate.next(traced(i / period % 2 == 0 ? 1 : -1, rests ? 0 : 8));
+        felt += let.norm() > Claim::kStep + 0.5 ? 1 : 0;
+        held += plate.held ? 1 : 0;
+      }
+      EXPECT_EQ(held, 3) << period << " ms, pause " << pause;
+      // the first push, the turns in a row, and those that the time until then allows
+      const double turns = (1 + Claim::kTurns) / (1 - 1e-3 * period * Claim::kTurnsPerSecond);
+      EXPECT_LE(felt, period * (turns + 1)) << period << " ms, pause " << pause;
+    }
+}
+
+/// A hand that presses slowly through a stiff thin plate, and back, is no plate that turns round by itself.
+TEST(Claim, AHandMayGoThroughAThinPlateAndBack) {
+  Rested plate;
+  for (int i = 0; i < 4000; ++i) {
+    plate.next(traced(i / 400 % 2 == 0 ? 1 : -1, 6));
+    ASSERT_FALSE(plate.held) << i;
+  }
 }
 
 /// The search finds the surface some ticks after the probe jumped: the force that then comes is not the plugin's jump.
