@@ -2,12 +2,17 @@
 /// `hapticd plot`: draws a picture of a recording.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/mark_text.hpp"
+#include "cli/recording/joint_motion.hpp"
+#include "cli/recording/tick_times.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/open_end.hpp"
 #include "cli/support/output_file.hpp"
@@ -100,9 +105,38 @@ void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   }
 }
 
+void noteMarks(const record::Recording& recording, record::RunNotes& notes) {
+  const record::RecordedStream* marks = recording.stream("marks");
+  const auto* t = marks != nullptr ? marks->find("t") : nullptr;
+  const auto* text = marks != nullptr ? marks->find("text") : nullptr;
+  if (t == nullptr || text == nullptr) return;
+  for (uint64_t row = 0; row < marks->rows(); ++row)
+    if (const std::string said = marks->text(row, *text); isMarkText(said))
+      notes.marks.emplace_back(marks->number(row, *t), said);
+}
+
+/// Notes how the hinges and sliders moved. @param from, to [s] what is drawn
+void noteJoints(const record::Recording& recording, const scene::Scene& scene, double from, double to,
+                record::RunNotes& notes) {
+  std::map<size_t, record::JointTrack> tracks;
+  TickTimes times(recording);
+  eachJointPlace(recording, scene, [&](size_t model, const JointMotion& joint, double tick, const JointPlace& place) {
+    const double t = times.of(tick), unit = joint.turns() ? 1 : 1e3;
+    if (!(t >= from && t <= to)) return;
+    record::JointTrack& track = tracks[model];
+    track.title = (joint.turns() ? "angle of " : "way of ") + scene.models[model].name;
+    track.unit = joint.turns() ? "rad" : "mm";
+    track.places.emplace_back(t, place.position * unit);
+    const double stop = place.stop != 0 ? joint.limit(place.stop) * unit : 0;
+    if (place.stop != 0 && std::count(track.stops.begin(), track.stops.end(), stop) == 0) track.stops.push_back(stop);
+  });
+  for (auto& [model, track] : tracks) notes.joints.push_back(std::move(track));
+}
+
 /// Returns models and limits of the run, and whether it ran in virtual time; empty if the description of the run cannot
 /// be read.
-record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
+/// @param from, to [s] what is drawn
+record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, double from, double to, bool& virtual_time) {
   record::RunNotes notes;
   notes.positions = true;
   const auto about = servo::readAbout(recording.aboutJson());
@@ -112,6 +146,8 @@ record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool&
   if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
   if (about->scene.devices.size() > 1 && arm < about->scene.devices.size()) notes.arm = about->scene.devices[arm].name;
   noteSilenced(recording, notes);
+  noteMarks(recording, notes);
+  noteJoints(recording, about->scene, from, to, notes);
   return notes;
 }
 
@@ -191,7 +227,8 @@ int plot(const PlotArguments& options) {
                                        options.file, first, last));
   if (const std::string wrong = whyNotWritable(out); !wrong.empty()) return fail(kBadInput, wrong);
   record::RunReport report = reportOf(titleOf(options.file, **recording), samples);
-  const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
+  const record::RunNotes notes = notesOf(**recording, options.arm, options.from.value_or(-HUGE_VAL),
+                                         options.to.value_or(HUGE_VAL), report.virtual_time);
   if (const record::Column* tick = ticks->find("tick"); tick != nullptr && !notes.arm.empty())
     takeOwnDepths(**recording, options.arm, *tick, *ticks, rows, samples);
   if (auto drawn = record::drawRun(report, samples, notes, out); !drawn) return fail(kFailed, drawn.error());
@@ -203,9 +240,10 @@ int plot(const PlotArguments& options) {
 
 void addPlot(const Command& app, int& exit_code) {
   auto options = std::make_shared<PlotArguments>();
-  const Command command = app.addSubcommand(
-      "plot",
-      "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");
+  const Command command = app.addSubcommand("plot",
+                                            "Draw a recording: depth, force, lateness, position, hinges and sliders "
+                                            "over time, with faults, marks, limits and "
+                                            "models by name (SVG).");
   command.addOption("file", options->file, "recording or black box").required();
   command.addOption("--out", options->out,
                     "picture to write; default: the name of the recording and .svg, such as run.h5.svg");
