@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -89,7 +90,11 @@ int decode(const DecodeArguments& options) {
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
   const auto bytes = contentOf(options.input);
-  if (!bytes) return fail(kBadInput, options.input + ": cannot be read, expected a capture");
+  if (!bytes)
+    return fail(kBadInput,
+                options.input +
+                    (std::filesystem::exists(options.input) ? ": cannot be read" : ": there is no such file") +
+                    ", expected a capture: hapticd device record writes one");
   const auto form = options.hex ? capture::Form::kHex : options.raw ? capture::Form::kRaw : capture::Form::kGuess;
   const auto taken = capture::readCapture(*bytes, form);
   if (!taken) return fail(kBadInput, options.input + ": " + taken.error());
