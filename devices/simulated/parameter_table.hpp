@@ -120,7 +120,11 @@ struct ParameterTable {
         F::real("hand.wander", &T::wander, "N", 0, 100, 0.1,
                 "Slow unrest of 0.2 to 1 Hz: rms force in each direction."),
         F::path("hand.path", &T::path,
-                "CSV file with the columns t,x,y,z (s, m, device frame), for hand.script: path.")};
+                "CSV file with the columns t,x,y,z (s, m, device frame), for hand.script: path."),
+        F::array(
+            "hand.pressed", &T::pressed, "s, s", 2, 0, 200, 0, 1e9, "[]",
+            "Times in which the hand holds the arm's button down: rows of begin and end. Without a row the arm has "
+            "no button.")};
   }
 };
 

@@ -63,7 +63,7 @@ class SimulatedArm : public Device, public Parameters {
     sample.time_ns = now_ns_;
     sample.sequence = sequence_;
     sample.flags = HDV_S_CALIBRATED | (torque_sensors ? uint32_t{HDV_S_TORQUE} : 0u);
-    sample.buttons = 0;
+    sample.buttons = presses(static_cast<double>(now_ns_ - start_ns_) * 1e-9) ? 1 : 0;
     const JointVector q = plant_->position(), tau = plant_->transmitted();
     for (int i = 0; i < q.size(); ++i) {
       const double step = joints_.step[i];
@@ -149,6 +149,13 @@ class SimulatedArm : public Device, public Parameters {
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
+  /// Returns whether the hand holds the button down. @param t [s] since the start
+  bool presses(double t) const noexcept HSP_RT {
+    for (size_t i = 0; i + 1 < pressed.size(); i += 2)
+      if (t >= pressed[i] && t < pressed[i + 1]) return true;
+    return false;
+  }
+
   /// Fills in the description of the arm. Its resolution and damping follow from its kinematics at the neutral pose.
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
@@ -158,6 +165,7 @@ class SimulatedArm : public Device, public Parameters {
     // the default is what the motors of a Premium 1.5 sustain
     if (arm() != Kind::kPremium15 && !force_stated_) info.capabilities |= HDV_C_FORCE_ASSUMED;
     info.rate_hz = rate;
+    info.buttons = pressed.empty() ? 0 : 1;
     info.max_force = max_force;
     info.continuous_force = continuous_force;
     info.max_stiffness = max_stiffness;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd device decode` and `encode`: apply the wire format of a device file to bytes, without the arm.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -77,7 +78,11 @@ int decode(const DecodeArguments& options) {
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
   const auto bytes = contentOf(options.input);
-  if (!bytes) return fail(kBadInput, options.input + ": " + bytes.error());
+  if (!bytes)
+    return fail(kBadInput, options.input + ": " + bytes.error() +
+                               (options.input == "-" || std::filesystem::exists(options.input)
+                                    ? ""
+                                    : ", expected a capture: hapticd device record writes one"));
   const auto form = options.hex ? capture::Form::kHex : options.raw ? capture::Form::kRaw : capture::Form::kGuess;
   const auto taken = capture::readCapture(*bytes, form);
   if (!taken) return fail(kBadInput, options.input + ": " + taken.error());

@@ -268,7 +268,11 @@ int printAxes(const std::string& file, const Part& part) {
   try {
     const std::vector<std::string> lines = axisLines(part);
     for (const std::string& line : lines) std::printf("%s\n", line.c_str());
-    if (lines.empty()) std::printf("%s: no face is round, so it has no axis\n", file.c_str());
+    if (lines.empty())
+      std::printf(
+          "%s: no face has an axis, as a cylinder, cone, torus or surface of revolution has: measure the pivot in the "
+          "program that made the part\n",
+          file.c_str());
   } catch (const std::invalid_argument& error) {
     return fail(kBadInput, file + ": " + error.what());
   }

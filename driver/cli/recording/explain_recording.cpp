@@ -86,6 +86,13 @@ bool isRecording(const std::string& file) {
   return first && *first == "\x89HDF";
 }
 
+/// Returns a line for each mark, such as "2.0010 s  trial 7 begins".
+std::vector<std::string> markLines(const record::Recording& recording) {
+  std::vector<std::string> lines;
+  for (const auto& [t, text] : recordedMarks(recording)) lines.push_back(fmt::format("{:9.4f} s  {}", t, text));
+  return lines;
+}
+
 int explainRecording(const std::string& file) {
   const auto recording = record::Recording::open(file);
   if (!recording) return fail(kBadInput, recording.error());
@@ -94,7 +101,7 @@ int explainRecording(const std::string& file) {
   const servo::RunModels models(**recording, run->scene);
   printRun(file, **recording, *run, models);
   printEvents(servo::messagesOf(**recording, *run, models));
-  printLines("marks", recordedMarks(**recording), "marks");
+  printLines("marks", markLines(**recording), "marks");
   printLines("orders", recordedOrders(**recording, run->scene, models), "orders");
   printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");
   printLines("moved", jointRanges(**recording, models, run->facts.rate), "poses");

@@ -8,15 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/recording/plot_notes.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/open_end.hpp"
 #include "cli/support/output_file.hpp"
-#include "hapticd/client.h"
-#include "hapticd/shape.h"
 #include "record/picture.hpp"
 #include "record/recording.hpp"
 #include "session/replay/about.hpp"
-#include "session/replay/run_models.hpp"
 
 namespace hapticd::cli {
 
@@ -85,77 +83,6 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
   return sample;
 }
 
-/// Notes when models were silenced, because otherwise the picture would not show why nothing is felt from then on.
-void noteSilenced(const record::Recording& recording, const servo::RunModels& models, record::RunNotes& notes) {
-  const record::RecordedStream* events = recording.stream("events");
-  const auto* kind = events != nullptr ? events->find("kind") : nullptr;
-  const auto* model = events != nullptr ? events->find("model") : nullptr;
-  const auto* t = events != nullptr ? events->find("t") : nullptr;
-  const auto* tick = events != nullptr ? events->find("tick") : nullptr;
-  if (kind == nullptr || model == nullptr || t == nullptr || tick == nullptr) return;
-  for (uint64_t row = 0; row < events->rows(); ++row) {
-    if (events->number(row, *kind) != double{HAPTICD_SILENCED}) continue;
-    const std::string name = models.nameOf(events->number(row, *model), events->number(row, *tick));
-    notes.moments.emplace_back(events->number(row, *t), name + " is silenced");
-  }
-}
-
-/// Replaces the depths of the stream `ticks`, which are the greatest of all arms, by those of one arm from the stream
-/// `contacts`. There is no depth if nothing was traced.
-void takeOwnDepths(const record::Recording& recording, uint32_t arm, const record::Column& tick_column,
-                   const record::RecordedStream& ticks, const std::vector<uint64_t>& rows,
-                   std::vector<record::Sample>& samples) {
-  const record::RecordedStream* contacts = recording.stream("contacts");
-  if (contacts == nullptr) return;
-  const auto *tick = contacts->find("tick"), *probe = contacts->find("probe"), *flags = contacts->find("flags"),
-             *depth = contacts->find("depth"), *model = contacts->find("model");
-  for (const auto* column : {tick, probe, flags, depth, model})
-    if (column == nullptr) return;
-  uint64_t at = 0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const double now = ticks.number(rows[i], tick_column);
-    samples[i].depth_m = std::nan(""), samples[i].model = -1;
-    while (at < contacts->rows() && contacts->number(at, *tick) < now) ++at;
-    for (; at < contacts->rows() && contacts->number(at, *tick) == now; ++at) {
-      const auto word = static_cast<uint32_t>(contacts->number(at, *flags));
-      const double deep = contacts->number(at, *depth);
-      if (contacts->number(at, *probe) != arm || (word & HSP_OUT_TRACED) == 0 || deep <= samples[i].depth_m) continue;
-      samples[i].depth_m = deep, samples[i].model = static_cast<int>(contacts->number(at, *model));
-    }
-  }
-}
-
-/// Replaces the numbers of the models by their places among those of the run, because a number can mean several models.
-void takeModels(const servo::RunModels& models, const record::Column& tick, const record::RecordedStream& ticks,
-                const std::vector<uint64_t>& rows, std::vector<record::Sample>& samples) {
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const size_t place = models.find(samples[i].model, ticks.number(rows[i], tick));
-    samples[i].model = place == servo::RunModels::kNone ? -1 : static_cast<int>(place);
-  }
-}
-
-/// Returns models and limits of the run, and whether it ran in virtual time; empty if the description of the run cannot
-/// be read. Gives the samples the models of the notes, and the depths of their arm. @param rows those of the samples
-record::RunNotes notesOf(const record::Recording& recording, const record::RecordedStream& ticks,
-                         const std::vector<uint64_t>& rows, uint32_t arm, std::vector<record::Sample>& samples,
-                         bool& virtual_time) {
-  record::RunNotes notes;
-  notes.positions = true;
-  const auto about = servo::readAbout(recording.aboutJson());
-  if (!about) return notes;
-  virtual_time = about->facts.virtual_time;
-  const servo::RunModels models(recording, about->scene);
-  for (const servo::RunModel& one : models.all()) notes.models.push_back(one.model.name);
-  if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
-  if (about->scene.devices.size() > 1 && arm < about->scene.devices.size()) notes.arm = about->scene.devices[arm].name;
-  noteSilenced(recording, models, notes);
-  const record::Column* tick = ticks.find("tick");
-  if (tick == nullptr) return notes;
-  if (!notes.arm.empty()) takeOwnDepths(recording, arm, *tick, ticks, rows, samples);
-  takeModels(models, *tick, ticks, rows, samples);
-  return notes;
-}
-
 /// Returns the name of the recording, with the scene and the only arm of the run as far as they are known. If there are
 /// several arms, the picture names the one that is drawn.
 std::string titleOf(const std::string& file, const record::Recording& recording) {
@@ -217,9 +144,10 @@ int plot(const PlotArguments& options) {
 
 void addPlot(const Command& app, int& exit_code) {
   auto options = std::make_shared<PlotArguments>();
-  const Command command = app.addSubcommand(
-      "plot",
-      "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");
+  const Command command = app.addSubcommand("plot",
+                                            "Draw a recording: depth, force, lateness, position, hinges and sliders "
+                                            "over time, with faults, marks, limits and "
+                                            "models by name (SVG).");
   command.addOption("file", options->file, "recording or black box").required();
   command.addOption("--out", options->out,
                     "picture to write; default: the name of the recording and .svg, such as run.h5.svg");

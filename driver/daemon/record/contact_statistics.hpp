@@ -42,6 +42,9 @@ class ContactStatistics {
     addToWindow(depth_m, dt);
   }
 
+  /// [rt] Adds a tick of contact in which the model gave no force: it was disabled, or waited until the tip had left
+  /// it.
+  void addUnfelt() noexcept HSP_RT { ++unfelt_; }
   /// [rt] Adds a tick in which the model pushed although it traced no surface, so that no contact can be reported.
   void addUntraced(double force_n) noexcept HSP_RT { untraced_.add(force_n); }
   /// [rt] Adds a tick in which the model pushed with a depth_m of 0. Probably its shape never sets depth_m.
@@ -61,6 +64,7 @@ class ContactStatistics {
   }
 
   uint64_t contactTicks() const noexcept { return ticks_; }
+  uint64_t unfeltTicks() const noexcept { return unfelt_; }        ///< ticks of contact without a force
   const Pushes& untraced() const noexcept { return untraced_; }    ///< pushes without a surface
   const Pushes& depthless() const noexcept { return depthless_; }  ///< pushes at a depth of exactly 0
   const Pushes& outside() const noexcept { return outside_; }      ///< pushes at a depth below 0
@@ -96,7 +100,7 @@ class ContactStatistics {
     window_ticks_ = window_mean_ = window_spread_ = window_time_ = 0;
   }
 
-  uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0;
+  uint64_t ticks_ = 0, unfelt_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0;
   double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0;
   double window_ticks_ = 0, window_mean_ = 0, window_spread_ = 0, window_time_ = 0;
   Pushes untraced_, depthless_, outside_, pulls_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include "base/regular_file.hpp"
 #include "record/plot.hpp"
@@ -17,7 +18,7 @@ namespace {
 /// [px] width of a plot over time, and of a histogram; height of both
 constexpr double kOver = 640, kBeside = 300, kHeight = 120;
 constexpr size_t kBins = 40;
-constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44", *kPlace = "#6a4c93";
+constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44", *kPlace = "#6a4c93", *kMark = "#777";
 
 /// One row of the picture: a quantity over time and its histogram.
 struct Quantity {
@@ -47,6 +48,13 @@ Curve curveOf(const std::string& name, const std::string& colour, const std::vec
   Curve curve{name, colour, {}, {}, 1.1};
   for (const Sample& sample : samples) curve.x.push_back(sample.t), curve.y.push_back(value(sample));
   return curve;
+}
+
+Panel panelOf(const Quantity& q, const std::vector<Sample>& samples, const Axis& time) {
+  Panel panel(q.title, time, axisOf(q, samples, false));
+  panel.curves = {curveOf("", q.colour, samples, q.value)};
+  panel.height = kHeight;
+  return panel;
 }
 
 Panel histogramOf(const Quantity& q, const std::vector<Sample>& samples) {
@@ -108,9 +116,9 @@ std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
   return spans;
 }
 
-/// Returns marks at the moments of the notes, and at the beginning of each fault: at most 12 marks. The end of a run is
-/// not a fault.
-std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes& notes) {
+/// Returns marks at the moments of the notes, at the beginning of each fault, and where programs marked the run: at
+/// most 12 marks. The end of a run is not a fault.
+std::vector<Mark> momentsOf(const std::vector<Sample>& samples, const RunNotes& notes) {
   constexpr size_t kMost = 12;
   constexpr uint32_t kStopped = 8;
   std::vector<Mark> marks;
@@ -122,6 +130,8 @@ std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes&
       marks.push_back({s.t, nameOfFault(s.fault)});
     now = s.fault;
   }
+  for (const auto& [t, text] : notes.marks)
+    if (t >= samples.front().t && t <= samples.back().t && marks.size() < kMost) marks.push_back({t, text, kMark});
   return marks;
 }
 
@@ -177,6 +187,21 @@ void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& 
   panel.bounds = {{limit, fmt::format("limits.force: {:g} N", limit)}};
 }
 
+/// Adds a row for a hinge or a slider. Its places are drawn as samples of their own, because they have ticks of their
+/// own.
+void addJoint(Picture& picture, const JointTrack& joint, const Axis& time) {
+  std::vector<Sample> places(joint.places.size());
+  for (size_t i = 0; i < places.size(); ++i) std::tie(places[i].t, places[i].position_m[0]) = joint.places[i];
+  const auto value = [](const Sample& s) { return s.position_m[0]; };
+  const auto always = [](const Sample&) { return true; };
+  const Quantity q{joint.title, joint.unit, kPlace, value, always, "% of the ticks"};
+  Panel panel = panelOf(q, places, time);
+  for (const double stop : joint.stops)
+    panel.bounds.push_back({stop, fmt::format("end stop: {:.4g} {}", stop, joint.unit)});
+  picture.add(std::move(panel));
+  picture.add(histogramOf(q, places));
+}
+
 std::string titleOf(const RunReport& report, double first, double last) {
   const bool whole = last - first > 0.98 * report.seconds;
   const std::string part = whole ? "" : fmt::format("{:.1f} to {:.1f} s of ", first, last);
@@ -211,10 +236,11 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
   const std::string arm = notes.arm.empty() ? "" : ", " + notes.arm;
   Picture picture(titleOf(report, first, last) + arm, {kOver, kBeside});
   for (const Quantity& q : quantitiesOf(report, samples, notes.positions)) {
-    Panel panel(q.title, {"time [s]", first, last}, axisOf(q, samples, false));
-    panel.curves = {curveOf("", q.colour, samples, q.value)};
-    panel.moments = faultMarks(samples, notes);
-    panel.height = kHeight;
+    Panel panel = panelOf(q, samples, {"time [s]", first, last});
+    panel.moments = momentsOf(samples, notes);
+    if (q.colour != kDepth)  // the texts of programs are read once, above the depth
+      for (Mark& mark : panel.moments)
+        if (mark.colour == kMark) mark.name.clear();
     Panel beside = histogramOf(q, samples);
     if (q.colour == kDepth) {
       const bool any =
@@ -226,6 +252,7 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
     picture.add(std::move(panel));
     picture.add(std::move(beside));
   }
+  for (const JointTrack& joint : notes.joints) addJoint(picture, joint, {"time [s]", first, last});
   return writeWhole(file, picture.svg());
 }
 

@@ -23,12 +23,21 @@ struct Sample {
   std::array<double, 3> position_m{};  ///< [m] position of the tip; nan if it is unknown
 };
 
+/// How a hinge or a slider moved.
+struct JointTrack {
+  std::string title, unit;
+  std::vector<std::pair<double, double>> places;  ///< [s] time, and place in `unit`
+  std::vector<double> stops;                      ///< end stops that it came to, in `unit`
+};
+
 /// Names and marks for a picture.
 struct RunNotes {
   std::vector<std::string> models;
   double force_limit_n = 0;  ///< limits.force of the arm; not drawn if it is 0 or not finite
   bool positions = false;    ///< true to add a row for each coordinate of the tip
   std::vector<std::pair<double, std::string>> moments{};  ///< [s] times, with texts such as "ring is silenced"
+  std::vector<std::pair<double, std::string>> marks{};    ///< [s] times of the marks of programs, with their texts
+  std::vector<JointTrack> joints{};                       ///< a row for each
   std::string arm{};                                      ///< name of the arm of the samples, if there are several arms
 };
 

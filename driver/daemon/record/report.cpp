@@ -22,6 +22,7 @@ Json quantiles(const Histogram& h) {
 Json contactJson(const ContactStatistics& c) {
   constexpr double kMm = 1e3;
   return {{"contact_ticks", c.contactTicks()},
+          {"unfelt_ticks", c.unfeltTicks()},
           {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
           {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
           {"buzz_mm", c.buzz() * kMm}};
@@ -73,6 +74,10 @@ std::string slowArmsText(const RunReport& report) {
 std::string contactText(const ContactStatistics& c, const RunReport& report, const std::string& who) {
   const double seconds = report.rate_hz > 0 ? static_cast<double>(c.contactTicks()) / report.rate_hz : 0;
   std::string text = fmt::format("  contact   {:.2f} s ({} ticks){}\n", seconds, c.contactTicks(), who);
+  if (c.unfeltTicks() > 0)
+    text +=
+        fmt::format("  no force  in {} further ticks{}: the model was disabled, or waited until the tip had left it\n",
+                    c.unfeltTicks(), who);
   if (c.contactTicks() > 0) {
     text += fmt::format("  depth     mean {:.3f} mm   std {:.3f} mm   max {:.3f} mm   buzz {:.4f} mm\n",
                         c.meanDepth() * 1e3, c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
@@ -134,7 +139,9 @@ std::string degradedText(const RunReport& report) {
 }
 
 bool felt(const ContactStatistics& contact) {
-  return contact.contactTicks() + contact.untraced().ticks + contact.depthless().ticks + contact.outside().ticks > 0;
+  return contact.contactTicks() + contact.unfeltTicks() + contact.untraced().ticks + contact.depthless().ticks +
+             contact.outside().ticks >
+         0;
 }
 
 /// Explains why nothing was felt.

@@ -73,7 +73,8 @@ struct ModelStatus {
   uint32_t iterations = 0;
   uint32_t trouble = 0;       ///< servo::ShapeFault: why the hand does not feel it
   int32_t failed_status = 0;  ///< the first status that step() returned and that the ABI does not allow; 0: none
-  /// waits: 1 if the model was added or enabled while a tip was inside; it is not felt until the tip is outside.
+  /// waits: 1 if the model was added or enabled, and a tip is or was inside; it is not felt until all tips have been
+  /// outside for Core::kFreeFor.
   /// at_end: HAPTICD_LOWEST or HAPTICD_HIGHEST if its joint stands at that end of its range, else 0.
   uint32_t waits = 0, at_end = 0;
 };

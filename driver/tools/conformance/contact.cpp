@@ -129,7 +129,9 @@ std::string flagsOf(const hsp_contact& c) {
   if (!traced && named) return "a normal or a depth is given without HSP_OUT_TRACED, so that the host does not read it";
   if (traced && c.depth_m > 0 && !contact)
     return "depth_m is above 0 without HSP_OUT_CONTACT: set both flags in contact";
-  if (traced && !(c.depth_m > 0) && contact) return "HSP_OUT_CONTACT is set at a depth of " + text(c.depth_m) + " m";
+  if (traced && !(c.depth_m > 0) && contact)
+    return "HSP_OUT_CONTACT is set at a depth of " + text(c.depth_m) +
+           " m: set it above 0 alone; a force from outside, as of a magnet or of glue, needs no flag";
   return "";
 }
 

@@ -75,6 +75,13 @@ def around_the_tip(client, ball):
         check("enable() of a model tells its program so", felt is False and [w.category for w in told] == [hapticd.NoForceWarning]
               and "draw the hand back" in str(told[0].message) and told[0].filename == __file__, (felt, told))
         check("and so does the model", client.models["ball"].waits)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            check("a program may wait until the model is felt, and is told if it is not", client.models["ball"].enable(wait=0.2) is False and len(told) == 1, told)
+            hand.put([0.03, 0, 0])
+            check("it goes on when the tip was outside", client.models["ball"].enable(wait=30) is True and len(told) == 1 and not client.models["ball"].waits, told)
+        hand.put([0.055, 0, 0])
+        check("and the next press is felt", until(lambda: largest(client, 20) > 1, 30), largest(client, 20))
 
 
 def away_from_the_tip(client):

@@ -102,6 +102,8 @@ with tempfile.TemporaryDirectory() as scratch:
             enabled_at = stimuli(client)
             comesAgain(client, trial)
         check("the run ends well", ask("ctl", "--name", "stimuli", "stop")[0] == 0 and run.wait(60) == 0)
+    soft = open(log).read().partition("soft (nurbs_rigid)\n")[2].partition("(nurbs_rigid)")[0]
+    check("the time in a disabled model is told, and is no part of its contact", "no force  in " in soft, soft)
     check("the log tells at the start what is disabled", "models soft, hard (disabled) on" in open(log).read(), open(log).read())
     isRecorded(recorded, enabled_at)
 finish()

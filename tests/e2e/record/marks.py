@@ -5,6 +5,7 @@ black box, a text that is none is refused, and a replay is exact.
 Usage: marks.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import csv
+import html
 import json
 import os
 import subprocess
@@ -63,6 +64,9 @@ def areTold(file, ticks, folder, ask):
     check("a mark is no order", len(h5py.File(file)["orders"]) == 0)
     code, told = ask("explain", file)
     check("explain tells them", code == 0 and f"{ticks[0] / 1000:.4f} s  {FIRST}\n" in told and f" s  {LONGEST}\n" in told, told)
+    picture = os.path.join(folder, "marks.svg")
+    code, told = ask("plot", file, "--out", picture)
+    check("plot draws them", code == 0 and all(html.unescape(open(picture).read()).count(f">{text}<") == 1 for text in (FIRST, LONGEST)), told)
     code, told = ask("export", file, "--csv", os.path.join(folder, "tables"))
     with open(os.path.join(folder, "tables", "marks.csv"), newline="") as table:
         cells = list(csv.DictReader(table))

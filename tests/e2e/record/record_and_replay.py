@@ -72,6 +72,10 @@ def aDoorStandsAtItsStop(folder):
     check("joints.csv has the angle and the stops by name", code == 0 and set(joints["name"]) == {"door"} and set(joints["unit"]) == {"rad"}
           and abs(joints["position"] - angles).max() < 1e-12 and set(joints["stop"][joints["position"] > 0.6 - 1e-12]) == {1}
           and set(joints["stop"]) == {-1, 0, 1} and abs(joints["t"] - joints["tick"] / 1000).max() < 1e-9, told)
+    picture = os.path.join(folder, "door.svg")
+    code, told = hapticd("plot", file, "--out", picture)
+    drawn = open(picture).read() if code == 0 else ""
+    check("plot draws the angle and the stops", ">angle of door<" in drawn and ">end stop: 0 rad<" in drawn and ">end stop: 0.6 rad<" in drawn, told)
     check("models.csv has the names of the numbers", open(os.path.join(table, "models.csv")).read() == "model,name,plugin,from_tick\n0,door,nurbs_rigid,0\n")
     code, told = hapticd("explain", file, "--json")
     check("explain of a recording refuses --json", code == 2 and "told in words alone" in told, told)

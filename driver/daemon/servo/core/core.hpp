@@ -52,6 +52,7 @@ struct ModelState {
   bool leaving = false;     ///< true if its force fades out, after which it is removed from the run
   bool until_free = false;  ///< true: it is not felt until every tip has been outside for some time, see enters()
   double free_for = 0;      ///< [s] time for which no tip has been inside; used while until_free is true
+  bool waits = false;       ///< true: a tip was found inside, so it is not felt until they were outside for kFreeFor
   std::array<hsp_change, 8> changes{};  ///< values of live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
@@ -100,6 +101,10 @@ struct RequiredResults {
 
 class Core {
  public:
+  /// [s] A model that came, or was enabled, is felt once no tip has been inside for this time. Until it was searched
+  /// for, no tip seems to be inside; a search runs every 5 ms, less often on a busy machine.
+  static constexpr double kFreeFor = 0.05;
+
   /// [main] @param models active shapes in the order of the scene, in the poses in which they were activated
   Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
        const CoreSettings& settings, link::Link& link);

@@ -56,9 +56,6 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
 
 namespace {
 
-/// [s] a model counts as free after this time; a search runs every 5 ms, less often on a busy machine
-constexpr double kFreeFor = 0.05;
-
 /// Keeps in model.breach the largest jump of force so far, as the max_jump that the plugin would have to claim so that
 /// this jump is allowed. The time of the jump (breach.t) is filled in after the step.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
@@ -260,6 +257,7 @@ bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace
     const hsp_contact& out = outputs_[i];
     if ((out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0) {
       model.free_for = 0;
+      model.waits = true;
       return false;
     }
     asked = true;
@@ -268,6 +266,7 @@ bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace
   if (!asked) return false;
   model.free_for += pace;
   if (model.free_for < kFreeFor) return false;
+  model.waits = false;
   if (pushes) pace *= Guard::kFadeIn / Guard::kFadeInOfField;
   model.until_free = pushes && model.guard.gain() < 1;
   return true;

@@ -16,7 +16,7 @@ bool Core::apply(const Order& order, double t) noexcept HSP_RT {
     case Order::Kind::kEnable:
       return enable(model, order.param);
     case Order::Kind::kDisable:
-      model.enabled = false;
+      model.enabled = model.waits = false;
       return true;
     case Order::Kind::kMove:
       if (!model.kinematic || model.lead.led()) return false;
@@ -47,7 +47,7 @@ bool Core::apply(const Order& order, double t) noexcept HSP_RT {
 }
 
 bool Core::enable(ModelState& model, uint32_t param) noexcept HSP_RT {
-  if (param == Order::kOnceFree && !model.enabled) model.until_free = true, model.free_for = 0;
+  if (param == Order::kOnceFree && !model.enabled) model.until_free = true, model.waits = false, model.free_for = 0;
   model.enabled = !model.leaving;
   if (model.enabled && model.dormant) {
     model.dormant = false;

@@ -180,6 +180,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const Arms
                {"enable_released_first", !facts.found_pressed},
                {"claims_hold_torques", !facts.former_claims},
                {"slow_arms_push_less", !facts.full_when_slow},
+               {"depth_of_felt_models", !facts.counts_unfelt},
                {"spares_steady_pushes", !facts.former_passivity},
                {"models", std::move(models)},
                {"devices", std::move(devices)},
@@ -203,6 +204,7 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     run.facts.found_pressed = !json.value("enable_released_first", false);
     run.facts.former_claims = !json.value("claims_hold_torques", false);
     run.facts.full_when_slow = !json.value("slow_arms_push_less", false);
+    run.facts.counts_unfelt = !json.value("depth_of_felt_models", false);
     run.facts.former_passivity = !json.value("spares_steady_pushes", false);
     run.version = json.at("hapticd");
     run.started = json.at("started");

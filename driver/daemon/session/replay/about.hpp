@@ -22,6 +22,7 @@ struct RunFacts {
   bool former_claims = false;     ///< old version: claims bounded neither torques nor steps after a parameter was set
   bool full_when_slow = false;    ///< old version: slow real arms pushed with their full force
   bool former_passivity = false;  ///< old version: a program's steady push counted as created energy
+  bool counts_unfelt = false;     ///< old version: the depth of a tick was the deepest of all models, felt or not
 };
 
 /// [main] Describes the run. @param streams the result of flightStreams()

@@ -249,7 +249,8 @@ nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>
     const auto is = [&](const scene::Model& model) { return model.name == name; };
     if (!places_[i].taken || std::none_of(models.begin(), models.end(), is) || !waitsForTip(session(), i)) continue;
     waiting.push_back(name);
-    log_(HSP_LOG_WARNING, name, "a tip is inside this model; the model gives no force until the tip has left it");
+    log_(HSP_LOG_WARNING, name,
+         "a tip is inside this model; the model gives no force until the tip has been outside for 50 ms");
   }
   return waiting;
 }

@@ -228,11 +228,10 @@ Result<void> RequestHandler::setEnabled(const std::string& model, bool enabled) 
   return post(order);
 }
 
-/// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
+/// Enables a model. If a tip is inside, the model is not felt until the tip has left it; the answer says so.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  // [s] Time in which the servo has surely stepped the model once. This can be short because a disabled model is still
-  // traced; only its force is off.
-  constexpr double kMet = 0.02;
+  // [s] After this time the model is felt or waits. A disabled model is still traced, and needs no search.
+  constexpr double kMet = Core::kFreeFor + 0.01;
   constexpr double kFound = 0.25;  // [s] the same for a model that has started disabled: first the search finds it
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};

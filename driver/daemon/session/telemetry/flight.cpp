@@ -226,6 +226,7 @@ void Flight::events(double t, const Core& core, const Arms& arms) noexcept HSP_R
 }
 
 void Flight::contacts(const Core& core, TickRow& tick) noexcept HSP_RT {
+  bool any_felt = false;
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < tick.status) tick.status = model.status;
@@ -251,8 +252,10 @@ void Flight::contacts(const Core& core, TickRow& tick) noexcept HSP_RT {
       row.step_us = static_cast<float>(static_cast<double>(model.step_ns) * 1e-3);
       row.gain = static_cast<float>(model.guard.gain());
       push(kContacts, row);
-      // The comparison is false for the first contact, because tick.depth is NaN.
-      if (!contact.traced || row.depth <= tick.depth) continue;
+      const bool felt = counts_unfelt_ || row.gain > 0;
+      // Felt models go first. The comparison is false for the first contact, because tick.depth is NaN.
+      if (!contact.traced || felt < any_felt || (felt == any_felt && row.depth <= tick.depth)) continue;
+      any_felt = felt;
       tick.depth = row.depth;
       tick.model = static_cast<int32_t>(index);
     }

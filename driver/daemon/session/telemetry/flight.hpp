@@ -128,6 +128,10 @@ class Flight {
   /// @param places most models that the run can have
   Flight(std::unique_ptr<record::FlightRing> ring, const Arms& arms, size_t places);
 
+  /// [main] For old recordings, in which the depth of a tick was the deepest of all models: a model that gives no
+  /// force, because it is disabled or waits for the tip to leave it, counts as those that are felt.
+  void countUnfelt() { counts_unfelt_ = true; }
+
   /// [rt] Called before a tick: notes the time of the tick, and the faults that are latched already.
   void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT;
 
@@ -184,6 +188,7 @@ class Flight {
   size_t mark_count_ = 0;
   Nanoseconds now_ = 0;
   uint64_t tick_ = 0;
+  bool counts_unfelt_ = false;             // see countUnfelt()
   double links_due_ = 0, motors_due_ = 0;  ///< [s] times when the next rows are due
   EventFinder events_;
 };

@@ -31,7 +31,8 @@ void tickColumns(RowLayout& layout) {
   layout.add("t", ColumnType::kReal, "s", "time since the first tick");
   layout.add("dt", ColumnType::kReal, "s", "time since the last tick; several periods if ticks were missed");
   layout.add("depth", ColumnType::kReal, "m",
-             "depth of the deepest contact; negative: distance to the nearest surface; nan: no model is traced");
+             "depth of the deepest contact, of a model that gives force if one is traced; negative: distance to the "
+             "nearest surface; nan: no model is traced");
   layout.add("lateness_us", ColumnType::kReal32, "us", "how long after its deadline the tick began");
   layout.add("compute_us", ColumnType::kReal32, "us", "how long the tick took");
   layout.add("model", ColumnType::kInt, "", "number of the model to which the column depth belongs, -1: none");

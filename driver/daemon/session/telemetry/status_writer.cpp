@@ -103,7 +103,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
     now.status = model.status;
     now.trouble = static_cast<uint32_t>(model.guard.fault());
     now.failed_status = model.failed_status;
-    now.waits = model.until_free && now.depth > 0 ? 1 : 0;  // until_free alone is also true before anything was found
+    now.waits = model.waits ? 1 : 0;
     now.at_end = endOf(model);
     page.model[place].now.write(now);
     if (place < books.size())

@@ -116,8 +116,10 @@ void Telemetry::recordArms(uint32_t index, double dt, const Core& core, const Ar
     if (arm < arms.size() && arms[arm]->limiter().fault() != Fault::kNone) continue;
     const Contact& contact = core.contact(index, arm);
     const double force = Eigen::Map<const Vector3d>(contact.world.force).norm();
-    by_arm_[index * devices_.size() + arm].add(contact.traced && contact.world.depth_m > 0, contact.world.depth_m,
-                                               force, dt, 0);
+    const bool felt = core.models()[index].guard.gain() > 0, inside = contact.traced && contact.world.depth_m > 0;
+    record::ContactStatistics& book = by_arm_[index * devices_.size() + arm];
+    book.add(inside && felt, contact.world.depth_m, force, dt, 0);
+    if (inside && !felt) book.addUnfelt();
   }
 }
 
@@ -160,7 +162,9 @@ void Telemetry::recordModels(double dt, const Core& core, const Arms& arms, Blac
       double& shallow = deep < 0 ? odd.outside : odd.depthless;
       shallow = std::max(shallow, size);
     }
-    models_[index].add(depth > 0 && pushed, depth, force, dt, model.step_ns);
+    const bool felt = model.guard.gain() > 0;
+    models_[index].add(depth > 0 && pushed && felt, depth, force, dt, model.step_ns);
+    if (depth > 0 && pushed && !felt) models_[index].addUnfelt();
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // The force with which a model in trouble fades out is not its answer, so it is not counted.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;

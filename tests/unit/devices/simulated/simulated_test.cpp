@@ -59,6 +59,19 @@ TEST(Simulated, HasASampleEachPeriodHoweverLateTheLastWasRead) {
   EXPECT_EQ(arm.nextSample(arm.now_ns + 7), arm.now_ns + 7);
 }
 
+TEST(Simulated, TheHandHoldsItsButtonAtTheGivenTimes) {
+  Module none, arm;
+  ASSERT_EQ(none.start(), HSP_OK) << none.said;
+  EXPECT_EQ(none.info.buttons, 0u);
+  arm.set("hand.pressed", std::vector<double>{0.01, 0.03, 0.04, 0.05});
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  EXPECT_EQ(arm.info.buttons, 1u);
+  for (int i = 1; i < 70; ++i) {
+    const bool down = (i >= 10 && i < 30) || (i >= 40 && i < 50);
+    EXPECT_EQ(arm.read(kMillisecond).buttons, down ? 1u : 0u) << "after " << i << " ms";
+  }
+}
+
 TEST(Simulated, ReportsWholeEncoderCounts) {
   Module arm;
   strokeOf(arm, 300);

@@ -2,6 +2,7 @@
 """Models of a running daemon and their live parameters."""
 from __future__ import annotations
 
+import time
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Sequence
@@ -35,7 +36,7 @@ class Model:
         self.number: int = facts["number"]  #: number of the model in the columns `model` of rows
         self.plugin: str = facts["plugin"]
         self.enabled: bool = facts["enabled"]
-        self.waits: bool = facts.get("waits", False)  #: True if it gives no force until no tip is inside it
+        self.waits: bool = facts.get("waits", False)  #: True if it gives no force until no tip has been inside for 50 ms
         self.kinematic: bool = facts["kinematic"]
         self.leader: Optional[int] = facts["leader"]  #: id of the process that leads the model
         self.position: list[float] = facts["pose"]["position"]  #: m, world frame
@@ -58,13 +59,18 @@ class Model:
             request["consent"] = True
         self._client.ask(**request)
 
-    def enable(self) -> bool:
-        """Fades the force of the model in. Returns False, and warns (NoForceWarning), if a tip is inside the model: then
-        it gives no force until the tip has left it. `h.models[name].waits` tells whether it still waits."""
+    def enable(self, wait: float = 0) -> bool:
+        """Fades the force of the model in. A model that has a tip inside gives no force until the tip has been outside for
+        50 ms. Returns as soon as the hand can feel the model, or after `wait` seconds; then it returns False and warns
+        (NoForceWarning). `h.models[name].waits` tells whether it still waits."""
         waits = self.name in self._client.ask(do="enable", model=self.name).get("waiting", [])
+        end = time.monotonic() + wait
+        while waits and time.monotonic() < end:
+            time.sleep(0.01)
+            waits = self._client.models[self.name].waits
         if waits:
-            warnings.warn_explicit(f"{self.name}: a tip is inside this model, so it gives no force until the tip has left "
-                                   "it; draw the hand back", NoForceWarning, *caller())
+            warnings.warn_explicit(f"{self.name}: a tip is inside this model, so it gives no force until the tip has been "
+                                   "outside for 50 ms; draw the hand back", NoForceWarning, *caller())
         return not waits
 
     def disable(self) -> None:

@@ -53,6 +53,15 @@ ClientReport client(const std::string& program, uint64_t answers, uint64_t in_ti
   return one;
 }
 
+TEST_F(Report, TellsOfContactWithoutForce) {
+  RunReport report = sample();
+  report.models[0].contact = {};
+  for (int i = 0; i < 300; ++i) report.models[0].contact.addUnfelt();
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("no force  in 300 further ticks: the model was disabled, or waited"), std::string::npos) << text;
+  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+}
+
 TEST_F(Report, TellsOfProgramsThatPushed) {
   RunReport report = sample();
   add(report.clients, client("spring", 1000, 990));

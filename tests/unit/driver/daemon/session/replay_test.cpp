@@ -75,10 +75,12 @@ struct Recorded : Rig {
 
   void record() {
     const auto streams = flightStreams(scene, arms, rate, 1000 / rate, 0);
-    const RunFacts facts{rate,          settings.period_ns, settings.ticks, true,
-                         found_pressed, former_claims,      full_when_slow, former_passivity};
+    const RunFacts facts{rate,          settings.period_ns, settings.ticks,   true,         found_pressed,
+                         former_claims, full_when_slow,     former_passivity, counts_unfelt};
     about = aboutRun(scene, *world, arms, facts, streams);
-    telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
+    auto flight = std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8);
+    if (counts_unfelt) flight->countUnfelt();
+    telemetry->attach(std::move(flight));
     loop->run();
   }
 
@@ -96,6 +98,7 @@ struct Recorded : Rig {
   record::About about;
   double rate = 1000;
   bool found_pressed = false, former_claims = false, full_when_slow = false, former_passivity = false;
+  bool counts_unfelt = false;
 };
 
 void expectSame(const ReplayOutcome& outcome) {
@@ -326,6 +329,35 @@ TEST(Replay, IsTheSameWhereProgramsPushedByEitherLawOfPassivity) {
     expectSame(rig.replay());
   }
   EXPECT_NE(damping[0], damping[1]) << "two laws";
+}
+
+/// A recording that says nothing of the rule was made before there was one.
+TEST(Replay, IsTheSameWhereADisabledModelIsDeeperThanTheOneThatIsFelt) {
+  for (const bool former : {false, true}) {
+    scene::Model lower = testModel("wall");
+    lower.name = "lower";
+    lower.pose.position.y() = -0.001;
+    Recorded rig("wall", {}, {}, {lower});
+    rig.counts_unfelt = former;
+    rig.every = [&rig, tick = 0](Nanoseconds) mutable {
+      if (tick++ != 50) return;
+      Order order;
+      order.kind = Order::Kind::kDisable;
+      rig.loop->post(order);
+    };
+    rig.record();
+    TickRow row{};
+    ArmRow arm{};
+    ASSERT_TRUE(rig.telemetry->flight()->read(20, row, arm));
+    EXPECT_EQ(row.model, 0) << "it is the deepest";
+    ASSERT_TRUE(rig.telemetry->flight()->read(150, row, arm));
+    EXPECT_EQ(row.model, former ? 0 : 1);
+    auto about = nlohmann::json::parse(rig.about.json);
+    ASSERT_EQ(about.at("depth_of_felt_models"), !former);
+    if (former) about.erase("depth_of_felt_models");
+    rig.about.json = about.dump();
+    expectSame(rig.replay());
+  }
 }
 
 TEST(BlackBox, HasTheSameRowsAsTheShortOneThatItReplaces) {

@@ -53,6 +53,29 @@ TEST(Entering, AModelThatComesAroundTheTipIsNotFeltUntilTheTipWasOutside) {
   EXPECT_DOUBLE_EQ(wall.largestAt(-0.001, 10), 1.0);
 }
 
+TEST(Entering, AModelThatWaitsSaysSoUntilItIsFelt) {
+  Coming wall("wall");
+  const ModelState& model = wall.world->core().models()[0];
+  EXPECT_FALSE(model.waits) << "before it was looked at";
+  wall.forceAt(-0.016);
+  EXPECT_TRUE(model.waits);
+  wall.largestAt(0.001, 40);
+  EXPECT_TRUE(model.waits) << "outside, but for less than 50 ms";
+  EXPECT_EQ(wall.largestAt(-0.016, 20), 0.0) << "so the next press is not felt";
+  EXPECT_TRUE(model.waits);
+  wall.largestAt(0.001, 60);
+  EXPECT_FALSE(model.waits);
+  EXPECT_GT(wall.forceAt(-0.001), 0.0);
+}
+
+TEST(Entering, ADisabledModelDoesNotWait) {
+  Coming wall("wall");
+  wall.forceAt(-0.016);
+  wall.order(Order::Kind::kDisable, 0);
+  wall.forceAt(-0.016);
+  EXPECT_FALSE(wall.world->core().models()[0].waits);
+}
+
 TEST(Entering, AModelThatComesElsewhereIsFeltAtOnce) {
   Coming wall("wall");
   wall.largestAt(0.05, 120);
