@@ -82,15 +82,12 @@ void NurbsRigid::reset() noexcept HSP_RT {
 hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
   const hsp_step step = body_ ? body_->move(given) : given;
   const uint32_t end = body_ ? endFlags(body_->body().stop()) : 0;
-  hsp_status worst = HSP_OK;
   stored_ = 0;
-  for (uint32_t i = 0; i < step.count; ++i) {
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const hsp_status status = press(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, contact);
+  return touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+    const hsp_status status = press(probe, step, contact);
     contact.flags |= end;
-    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
-  }
-  return worst;
+    return status;
+  });
 }
 
 hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {

@@ -98,15 +98,12 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);
   const uint32_t end = endFlags(body_->stop());
-  hsp_status worst = HSP_OK;
   stored_ = 0;
-  for (uint32_t i = 0; i < moved.count; ++i) {
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const hsp_status status = press(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact, now);
+  return touchEach(moved, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+    const hsp_status status = press(probe, moved, contact, now);
     contact.flags |= end;
-    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
-  }
-  return worst;
+    return status;
+  });
 }
 
 hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
