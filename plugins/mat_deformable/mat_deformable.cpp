@@ -168,9 +168,8 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
   body_->nodes().advance(elapsed(step));
   presses_.clear();
   stored_ = 0;
-  const hsp_status worst = touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t i) {
-    return touch(probe, step, i, contact);
-  });
+  const hsp_status worst = touchEach(
+      step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t i) { return touch(probe, step, i, contact); });
   body_->yield(presses_);
   if (keeper_) keeper_->volume.step(body_->nodes());
   show(step);

@@ -31,8 +31,8 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
         kMotionNames[motion_] + "; set motion: dynamic, or remove limits");
   takeParts(instance_name_);
   load(activation, report);
-  if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
+  if (pop_through_ > 0 && sides_ != kBoth)
+    writeLog(HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
     throw std::invalid_argument(
@@ -62,13 +62,12 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
   const dynamics::MassProperties shape =
       part() != nullptr ? massProperties(*part(), bounded) : massProperties(model(), bounded);
   const bool asked = center_.empty() || inertia_.empty();
-  if (!bounded && asked && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING,
-                "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
+  if (!bounded && asked)
+    writeLog(HSP_LOG_WARNING,
+             "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
   body_.emplace(*this, shape, activation);
   if (joint_ == static_cast<int>(dynamics::Joint::kHinge) && part() != nullptr) warnOfCrossedAxis();
-  if (joint_ != static_cast<int>(dynamics::Joint::kFree) && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_DEBUG, jointText(*this, body_->body()).c_str());
+  if (joint_ != static_cast<int>(dynamics::Joint::kFree)) writeLog(HSP_LOG_DEBUG, jointText(*this, body_->body()));
   report.flags |= HSP_R_MOVES;
 }
 

@@ -69,6 +69,8 @@ class Shape {
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
   void changed() noexcept HSP_RT {}               ///< [rt] called when live parameters have new values, before step()
   const hsp_host* host() const { return host_; }  ///< [any] not valid in the constructor
+  /// [main][sim] Writes a text to the log of the host, if there is one. @param level HSP_LOG_*
+  void writeLog(int32_t level, const std::string& text) const { detail::writeLog(host_, level, text); }
 
  private:
   template <class T>
@@ -124,9 +126,8 @@ struct ShapeClass {
           "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
           "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
           "is public");
-      return touchEach(*step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) HSP_RT {
-        return self(shape).touch(probe, *step, contact);
-      });
+      return touchEach(*step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t)
+                                  HSP_RT { return self(shape).touch(probe, *step, contact); });
     }
   }
   static const void* extension(hsp_shape* shape, const char* name) { return self(shape).extension(name); }
