@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "traced_shape/joint_end.hpp"
-
 namespace hapticd {
 namespace {
 
@@ -65,7 +63,9 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
   if (!bounded && asked)
     writeLog(HSP_LOG_WARNING,
              "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
-  body_.emplace(*this, shape, activation);
+  body_.emplace(lawOf(*this, shape), MovingFrame::of(activation.pose),
+                gravity_ ? Eigen::Vector3d(activation.gravity) : Eigen::Vector3d::Zero(), activation);
+  body_->setVelocity(Eigen::Vector3d(velocity_.data()), Eigen::Vector3d(spin_.data()));
   if (joint_ == static_cast<int>(dynamics::Joint::kHinge) && part() != nullptr) warnOfCrossedAxis();
   if (joint_ != static_cast<int>(dynamics::Joint::kFree)) writeLog(HSP_LOG_DEBUG, jointText(*this, body_->body()));
   report.flags |= HSP_R_MOVES;
@@ -80,7 +80,7 @@ void NurbsRigid::reset() noexcept HSP_RT {
 
 hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
   const hsp_step step = body_ ? body_->move(given) : given;
-  const uint32_t end = body_ ? endFlags(body_->body().stop()) : 0;
+  const uint32_t end = body_ ? body_->endFlags() : 0;
   stored_ = 0;
   return touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
     const hsp_status status = press(probe, step, contact);
@@ -184,7 +184,7 @@ const void* NurbsRigid::extension(const char* name) {
   if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<NurbsRigid>(name);
   energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                          const NurbsRigid& self = *reinterpret_cast<NurbsRigid*>(shape);
-                         return self.stored_ + (self.body_ ? self.body_->energy() : 0);
+                         return self.stored_ + (self.body_ ? self.body_->body().energy() : 0);
                        }};
   return &energy_extension_;
 }
