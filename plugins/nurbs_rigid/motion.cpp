@@ -41,19 +41,11 @@ void addPatch(const trace::Patch& patch, dynamics::SolidIntegral& integral) {
 }  // namespace
 
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded) {
-  const Eigen::AlignedBox3d& box = model.bounds();
-  dynamics::SolidIntegral integral(box.center());
+  dynamics::SolidIntegral integral(model.bounds().center());
   for (int i = 0; i < model.patchCount(); ++i) addPatch(model.patch(i), integral);
   bounded = true;
   for (int shell = 0; shell < model.shellCount(); ++shell) bounded = bounded && model.closed(shell);
-  constexpr double kEmptiest = 1e-6;  // share of the box; a smaller volume may be only rounding
-  bounded = bounded && std::abs(integral.volume()) > kEmptiest * box.volume();
-  if (bounded) return integral.properties();
-  Eigen::AlignedBox3d thick = box;  // a flat model must have moments of inertia too
-  const Vector3d margin = Vector3d::Constant(1e-3 * box.diagonal().norm());
-  thick.min() -= margin;
-  thick.max() += margin;
-  return dynamics::boxProperties(thick);
+  return integral.propertiesIn(model.bounds(), bounded);
 }
 
 dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::MassProperties& shape) {

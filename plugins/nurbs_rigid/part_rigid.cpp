@@ -131,14 +131,8 @@ dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) 
          {Eigen::Vector3d(0.5 * (a + b)), Eigen::Vector3d(0.5 * (b + c)), Eigen::Vector3d(0.5 * (c + a))})
       integral.add(middle, area / 3);
   }
-  constexpr double kEmptiest = 1e-6;
-  bounded = !part.open() && std::abs(integral.volume()) > kEmptiest * box.volume();
-  if (bounded) return integral.properties();
-  Eigen::AlignedBox3d thick = box;
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-3 * box.diagonal().norm());
-  thick.min() -= margin;
-  thick.max() += margin;
-  return dynamics::boxProperties(thick);
+  bounded = !part.open();
+  return integral.propertiesIn(box, bounded);
 }
 
 }  // namespace hapticd
