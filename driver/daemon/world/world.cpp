@@ -17,8 +17,7 @@ hsp_pose startPose(const scene::Model& model) {
   const scene::Pose& start = model.kinematic && !model.path.empty() ? model.path.front().pose : model.pose;
   hsp_pose pose{};
   Eigen::Map<Eigen::Vector3d>(pose.position) = start.position;
-  const Eigen::Quaterniond& q = start.orientation;
-  pose.orientation[0] = q.w(), pose.orientation[1] = q.x(), pose.orientation[2] = q.y(), pose.orientation[3] = q.z();
+  storeQuaternion(start.orientation, pose.orientation);
   return pose;
 }
 

@@ -185,9 +185,8 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
   std::array<double, 4 * HDV_MAX_LINKS> orientations;
   if (links->frames(device_->handle(), sample_.position, positions.data(), orientations.data()) != HSP_OK) return 0;
   for (uint32_t i = 0; i < links->link_count; ++i) {
-    const double* q = &orientations[4 * i];
     const Eigen::Vector3d p = R_world_device_ * Eigen::Map<const Eigen::Vector3d>(&positions[3 * i]) + origin_world_;
-    const Eigen::Quaterniond turn = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    const Eigen::Quaterniond turn = q_world_device_ * quaternionOf(&orientations[4 * i]);
     ends[i] = {{p.x(), p.y(), p.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
   }
   return links->link_count;
@@ -197,9 +196,8 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
 void Arm::takeVirtualProbe() noexcept HSP_RT {
   if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // now driven by force, which can be faded
   if (!admittance_->started() && !admittance_->start(sample_.position)) return;
-  const Eigen::Vector4d& q = admittance_->orientation();
   probe_.position = R_world_device_ * admittance_->position() + origin_world_;
-  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  probe_.orientation = q_world_device_ * quaternionOf(admittance_->orientation().data());
   probe_.velocity = R_world_device_ * admittance_->velocity();
 }
 
