@@ -236,7 +236,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     } else {
       fadeContact(index, i, fade);
     }
-    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
+    Contact& contact = contacts_[at(index, i)];
     if (!probes[i].valid) {
       contact = Contact{};
       continue;
