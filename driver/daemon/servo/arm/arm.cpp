@@ -344,4 +344,8 @@ void Arm::scaleToMotors(const Weight::Torques& gravity) noexcept HSP_RT {
   }
 }
 
+bool onlySimulated(const Arms& arms) noexcept HSP_RT {
+  return std::all_of(arms.begin(), arms.end(), [](const auto& arm) { return arm->simulated(); });
+}
+
 }  // namespace hapticd::servo

@@ -202,4 +202,7 @@ class Arm {
 /// The arms of a run, in the order of the scene.
 using Arms = std::vector<std::unique_ptr<Arm>>;
 
+/// [any] True if no arm is real, so that no hand can be hurt.
+bool onlySimulated(const Arms& arms) noexcept HSP_RT;
+
 }  // namespace hapticd::servo

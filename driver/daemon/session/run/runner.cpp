@@ -204,7 +204,7 @@ Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<vo
   const auto watchdog = watchdogOf(watched, mayLag());
   if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
-  const bool anyhow = onlySimulated() || options_.allow_non_rt;
+  const bool anyhow = onlySimulated(arms_) || options_.allow_non_rt;
   os::Thread servo;
   if (auto started = startServo(servo, anyhow); !started) return started;
   lookAfter(proximity, anyhow, every);
@@ -266,7 +266,7 @@ std::vector<std::string> Runner::enterRealTime() const {
     if (const auto code = os::pinTo(*options_.cpu))
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
-    refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
+    refused.push_back(noFifo(options_.priority, code, !onlySimulated(arms_)));
   [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already
   return refused;
 }
@@ -287,12 +287,6 @@ void Runner::namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::stri
 void Runner::forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how) {
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->pusher(arm, place, 0, "");
   event_log_->pushesNoMore(arm, place, how);
-}
-
-bool Runner::onlySimulated() const {
-  for (const auto& arm : arms_)
-    if (!arm->simulated()) return false;
-  return true;
 }
 
 std::string Runner::faultOf(size_t arm) const {
