@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/happens_within.hpp"
 #include "base/os.hpp"
 #include "log/log.hpp"
 #include "session/messages/silence_reason.hpp"
@@ -238,10 +239,8 @@ void Runner::suspend() noexcept {
 /// Stops the process until it is continued. Called once forces are zero, and the last command has been sent.
 void Runner::stopProcess() {
   constexpr Nanoseconds kMostPatience = 1'000'000'000, kLastCommand = 20'000'000;
-  RealClock clock(0);
-  const Nanoseconds until = clock.now() + kMostPatience;
-  while (!loop_->finished() && !loop_->silent() && clock.now() < until) clock.waitUntil(clock.now() + kReadyPoll);
-  clock.waitUntil(clock.now() + kLastCommand);
+  happensWithin(kMostPatience, kReadyPoll, [this] { return loop_->finished() || loop_->silent(); });
+  RealClock(0).waitUntil(monotonicNow() + kLastCommand);
   suspend_ = false;
   if (guard_) guard_->arm(false);
   log::write(HSP_LOG_WARNING, "", "the process stops; forces are off");
