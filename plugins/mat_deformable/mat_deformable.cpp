@@ -7,6 +7,7 @@
 
 #include "crease.hpp"
 #include "medial_file.hpp"
+#include "state.hpp"
 
 namespace hapticd {
 namespace {

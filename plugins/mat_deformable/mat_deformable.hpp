@@ -11,7 +11,6 @@
 #include "kernels/medial/volume.hpp"
 #include "medial_file.hpp"
 #include "soft_body.hpp"
-#include "state.hpp"
 
 namespace hapticd {
 
