@@ -69,7 +69,7 @@ class Shape {
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
   void changed() noexcept HSP_RT {}               ///< [rt] called when live parameters have new values, before step()
   const hsp_host* host() const { return host_; }  ///< [any] not valid in the constructor
-  /// [main][sim] Writes a text to the log of the host, if there is one. @param level HSP_LOG_*
+  /// [main][sim] Writes a text to the log of the host, if there is one. The level is HSP_LOG_WARNING or the like.
   void writeLog(int32_t level, const std::string& text) const { detail::writeLog(host_, level, text); }
 
  private:
