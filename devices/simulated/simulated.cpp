@@ -107,7 +107,7 @@ class SimulatedArm : public Device, public Parameters {
       extension_ = kinematics::Extension<SimulatedArm>::of(*arm_);
       return &extension_;
     } catch (const std::exception& e) {
-      detail::logError(host(), e.what());
+      writeLog(HSP_LOG_ERROR, e.what());
       return nullptr;
     }
   }

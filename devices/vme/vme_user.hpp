@@ -28,12 +28,12 @@ struct OldMaster {
 };
 static_assert(sizeof(PackedMaster) == 32 && sizeof(PackedSlave) == 28 && sizeof(OldMaster) == 40, "kernel ABI");
 
-inline constexpr unsigned long kGetSlave = _IOR(0xAE, 1, PackedSlave), kSetSlave = _IOW(0xAE, 2, PackedSlave);
+inline constexpr unsigned long kSetSlave = _IOW(0xAE, 2, PackedSlave);
 inline constexpr unsigned long kGetMaster = _IOR(0xAE, 3, PackedMaster), kSetMaster = _IOW(0xAE, 4, PackedMaster);
 inline constexpr unsigned long kGetOldMaster = _IOR(0xAE, 3, OldMaster), kSetOldMaster = _IOW(0xAE, 4, OldMaster);
 
 inline constexpr uint32_t kA16 = 1, kA24 = 2, kA32 = 4;  // address spaces
-inline constexpr uint32_t kD8 = 1, kD16 = 2, kD32 = 4;   // data widths
+inline constexpr uint32_t kD16 = 2, kD32 = 4;            // data widths
 inline constexpr uint32_t kSingle = 1;                   // cycles of one datum
 inline constexpr uint32_t kSuper = 0x1000, kUser = 0x2000, kProgram = 0x4000, kData = 0x8000;
 inline constexpr uint64_t kGranule = 0x10000;  // base and size are multiples of this, because of the bridge

@@ -16,4 +16,12 @@ inline std::string shortNumber(double value, int digits = 3) {
   return text;
 }
 
+/// [any] Returns a number with at most so many significant digits, and an exponent if it is very large or small.
+/// @param digits 1 to 17
+inline std::string withDigits(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
 }  // namespace hapticd

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/clock.hpp"
+#include "base/happens_within.hpp"
 #include "cli/support/command.hpp"
 #include "control/liveness.hpp"
 #include "live_status/live_status.hpp"
@@ -118,13 +119,8 @@ int stream(const TopArguments& options, const status::Page& page) {
 /// @param tick tick that the page showed before
 bool standsStill(const status::Page& page, uint64_t tick) {
   constexpr Nanoseconds kLook = 10'000'000, kPatience = 500'000'000;
-  RealClock clock(0);
-  const Nanoseconds end = clock.now() + kPatience;
-  while (clock.now() < end) {
-    if (ended(page) || page.now.read().value_or(status::TickStatus{}).tick != tick) return false;
-    clock.waitUntil(clock.now() + kLook);
-  }
-  return true;
+  return !happensWithin(kPatience, kLook,
+                        [&] { return ended(page) || page.now.read().value_or(status::TickStatus{}).tick != tick; });
 }
 
 int top(const TopArguments& options) {

@@ -127,10 +127,6 @@ double usual(std::string_view id) {
 
 }  // namespace
 
-void MatDeformable::writeLog(int level, const std::string& text) const {
-  if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
-}
-
 MedialFile MatDeformable::readFile() const {
   try {
     return readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
@@ -141,7 +137,6 @@ MedialFile MatDeformable::readFile() const {
 }
 
 void MatDeformable::describe(const MedialFile& file, double tick) const {
-  if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
   writeLog(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
   if (!(body_->greatestRadius() > 0))

@@ -25,12 +25,9 @@ double lastWork(const Track& track, const Vector3d& moved) noexcept {
 hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
   met_.clear();
   stored_ = 0;
-  hsp_status worst = HSP_OK;
-  for (uint32_t i = 0; i < step.count; ++i) {
-    const hsp_status status = addContact(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, i,
-                                         *HSP_AT(hsp_contact, step.out, step.out_stride, i));
-    if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
-  }
+  const hsp_status worst = touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t i) {
+    return addContact(probe, step, i, contact);
+  });
   const std::span<medial::FeltContact> contacts(contacts_.data(), met_.size());
   body_->feltSurface()->advance(elapsed(step), contacts);
   for (std::size_t k = 0; k < met_.size(); ++k) {

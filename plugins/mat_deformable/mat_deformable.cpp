@@ -7,6 +7,7 @@
 
 #include "crease.hpp"
 #include "medial_file.hpp"
+#include "state.hpp"
 
 namespace hapticd {
 namespace {
@@ -168,12 +169,8 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
   body_->nodes().advance(elapsed(step));
   presses_.clear();
   stored_ = 0;
-  hsp_status worst = HSP_OK;
-  for (uint32_t i = 0; i < step.count; ++i) {
-    const hsp_status status = touch(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, i,
-                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i));
-    if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
-  }
+  const hsp_status worst = touchEach(
+      step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t i) { return touch(probe, step, i, contact); });
   body_->yield(presses_);
   if (keeper_) keeper_->volume.step(body_->nodes());
   show(step);

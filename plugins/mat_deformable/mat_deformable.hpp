@@ -11,7 +11,6 @@
 #include "kernels/medial/volume.hpp"
 #include "medial_file.hpp"
 #include "soft_body.hpp"
-#include "state.hpp"
 
 namespace hapticd {
 
@@ -173,7 +172,6 @@ class MatDeformable final : public Shape {
   /// Returns the material of a point of the file. Its relaxation comes from the parameters.
   medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;
   std::vector<medial::Tissue> distinct(const MedialFile& file) const;
-  void writeLog(int level, const std::string& text) const;  ///< [main] writes to the log of the host, if it has one
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
   FindOptions searchOptions() const noexcept;

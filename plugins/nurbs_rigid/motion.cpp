@@ -38,6 +38,16 @@ void addPatch(const trace::Patch& patch, dynamics::SolidIntegral& integral) {
       });
 }
 
+}  // namespace
+
+dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded) {
+  dynamics::SolidIntegral integral(model.bounds().center());
+  for (int i = 0; i < model.patchCount(); ++i) addPatch(model.patch(i), integral);
+  bounded = true;
+  for (int shell = 0; shell < model.shellCount(); ++shell) bounded = bounded && model.closed(shell);
+  return integral.propertiesIn(model.bounds(), bounded);
+}
+
 dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::MassProperties& shape) {
   dynamics::RigidBodyLaw law;
   law.mass = given.mass_;
@@ -68,24 +78,6 @@ dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::Mass
   return law;
 }
 
-}  // namespace
-
-dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded) {
-  const Eigen::AlignedBox3d& box = model.bounds();
-  dynamics::SolidIntegral integral(box.center());
-  for (int i = 0; i < model.patchCount(); ++i) addPatch(model.patch(i), integral);
-  bounded = true;
-  for (int shell = 0; shell < model.shellCount(); ++shell) bounded = bounded && model.closed(shell);
-  constexpr double kEmptiest = 1e-6;  // share of the box; a smaller volume may be only rounding
-  bounded = bounded && std::abs(integral.volume()) > kEmptiest * box.volume();
-  if (bounded) return integral.properties();
-  Eigen::AlignedBox3d thick = box;  // a flat model must have moments of inertia too
-  const Vector3d margin = Vector3d::Constant(1e-3 * box.diagonal().norm());
-  thick.min() -= margin;
-  thick.max() += margin;
-  return dynamics::boxProperties(thick);
-}
-
 std::string jointText(const MotionParameters& parameters, const dynamics::RigidBody& body) {
   const bool hinge = parameters.joint_ == static_cast<int>(dynamics::Joint::kHinge);
   const char* unit = hinge ? " rad" : " m";
@@ -100,32 +92,6 @@ std::string jointText(const MotionParameters& parameters, const dynamics::RigidB
          << unit << ", on which it swings at " << std::sqrt(spring / inertia) / (2 * M_PI)
          << " Hz if neither drag, weight nor a hand acts";
   return text.str();
-}
-
-DynamicBody::DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,
-                         const hsp_activation& activation)
-    : body_(lawOf(parameters, shape), MovingFrame::of(activation.pose).position,
-            MovingFrame::of(activation.pose).orientation,
-            parameters.gravity_ ? Vector3d(activation.gravity) : Vector3d::Zero()),
-      probes_(std::max(activation.max_probes, 1u)),
-      presses_(std::max(activation.max_probes, 1u)) {
-  dynamics::validateSwing(body_.swingRate(), activation.rate_hz);
-  body_.setVelocity(Vector3d(parameters.velocity_.data()), Vector3d(parameters.spin_.data()));
-  now_ = frame();
-}
-
-MovingFrame DynamicBody::frame() const noexcept HSP_RT {
-  return {body_.position(), body_.orientation(), body_.linear(), body_.angular()};
-}
-
-hsp_step DynamicBody::move(const hsp_step& step) noexcept HSP_RT {
-  const MovingFrame before = MovingFrame::of(*step.pose);
-  if (step.dt_s > 0)
-    body_.step(presses_.predict(step, before, [this](const Vector3d& point) { return body_.velocityAt(point); }),
-               step.dt_s);
-  now_ = frame();
-  now_.write(*step.pose);
-  return probes_.step(step, before, now_);
 }
 
 }  // namespace hapticd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A rigid model that moves under the forces on it: its parameters, its body, and the contacts that push it.
+/// A rigid model that moves under the forces on it: its parameters, and the body that they describe.
 #pragma once
 #include <array>
 #include <string>
@@ -10,7 +10,6 @@
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/rigid_body.hpp"
 #include "kernels/trace/model.hpp"
-#include "traced_shape/contact_predictor.hpp"
 
 namespace hapticd {
 
@@ -70,38 +69,9 @@ dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
 /// [main] Says in one line how the joint of a body moves: its inertia, end stops, and the swing on its spring.
 std::string jointText(const MotionParameters& parameters, const dynamics::RigidBody& body);
 
-/// A model that moves under forces: its rigid body, its frame, and its contacts.
-class DynamicBody {
- public:
-  /// [main] Places the body.
-  /// @param shape properties for 1 kg, used where the parameters leave out the centre of mass or the inertia
-  /// @throws std::invalid_argument if no body can have these properties.
-  DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,
-              const hsp_activation& activation);
-
-  /// [rt] Moves the body through the step. It is pushed by the contacts that were given to remember() since the last
-  /// step. Writes the new pose.
-  /// @return the same step, with the positions and velocities of its probes relative to the new pose
-  hsp_step move(const hsp_step& step) noexcept HSP_RT;
-
-  /// [rt] Stores the contact of probe `index` with the body, in the model frame. Probes that are not stored do not push
-  /// the body.
-  void remember(uint32_t index, const dynamics::LastContact& in_model) noexcept HSP_RT {
-    presses_.remember(index, in_model, now_);
-  }
-
-  void release() noexcept HSP_RT { presses_.release(); }  ///< [rt] forgets the contacts
-
-  double energy() const noexcept HSP_RT { return body_.energy(); }  ///< [rt] [J] see RigidBody::energy()
-  const dynamics::RigidBody& body() const noexcept { return body_; }
-
- private:
-  MovingFrame frame() const noexcept HSP_RT;
-
-  dynamics::RigidBody body_;
-  MovedProbes probes_;
-  ContactPredictor presses_;
-  MovingFrame now_;
-};
+/// [main] Returns the law of a body with these parameters.
+/// @param shape properties for 1 kg, used where the parameters leave out the centre of mass or the inertia
+/// @throws std::invalid_argument if no body can have these properties.
+dynamics::RigidBodyLaw lawOf(const MotionParameters& parameters, const dynamics::MassProperties& shape);
 
 }  // namespace hapticd

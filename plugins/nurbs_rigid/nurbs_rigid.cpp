@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "traced_shape/joint_end.hpp"
-
 namespace hapticd {
 namespace {
 
@@ -31,8 +29,8 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
         kMotionNames[motion_] + "; set motion: dynamic, or remove limits");
   takeParts(instance_name_);
   load(activation, report);
-  if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
+  if (pop_through_ > 0 && sides_ != kBoth)
+    writeLog(HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
     throw std::invalid_argument(
@@ -62,13 +60,14 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
   const dynamics::MassProperties shape =
       part() != nullptr ? massProperties(*part(), bounded) : massProperties(model(), bounded);
   const bool asked = center_.empty() || inertia_.empty();
-  if (!bounded && asked && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING,
-                "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
-  body_.emplace(*this, shape, activation);
+  if (!bounded && asked)
+    writeLog(HSP_LOG_WARNING,
+             "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
+  body_.emplace(lawOf(*this, shape), MovingFrame::of(activation.pose),
+                gravity_ ? Eigen::Vector3d(activation.gravity) : Eigen::Vector3d::Zero(), activation);
+  body_->setVelocity(Eigen::Vector3d(velocity_.data()), Eigen::Vector3d(spin_.data()));
   if (joint_ == static_cast<int>(dynamics::Joint::kHinge) && part() != nullptr) warnOfCrossedAxis();
-  if (joint_ != static_cast<int>(dynamics::Joint::kFree) && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_DEBUG, jointText(*this, body_->body()).c_str());
+  if (joint_ != static_cast<int>(dynamics::Joint::kFree)) writeLog(HSP_LOG_DEBUG, jointText(*this, body_->body()));
   report.flags |= HSP_R_MOVES;
 }
 
@@ -81,16 +80,13 @@ void NurbsRigid::reset() noexcept HSP_RT {
 
 hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
   const hsp_step step = body_ ? body_->move(given) : given;
-  const uint32_t end = body_ ? endFlags(body_->body().stop()) : 0;
-  hsp_status worst = HSP_OK;
+  const uint32_t end = body_ ? body_->endFlags() : 0;
   stored_ = 0;
-  for (uint32_t i = 0; i < step.count; ++i) {
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const hsp_status status = press(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, contact);
+  return touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+    const hsp_status status = press(probe, step, contact);
     contact.flags |= end;
-    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
-  }
-  return worst;
+    return status;
+  });
 }
 
 hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
@@ -193,7 +189,7 @@ const void* NurbsRigid::extension(const char* name) {
   if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<NurbsRigid>(name);
   energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                          const NurbsRigid& self = *reinterpret_cast<NurbsRigid*>(shape);
-                         return self.stored_ + (self.body_ ? self.body_->energy() : 0);
+                         return self.stored_ + (self.body_ ? self.body_->body().energy() : 0);
                        }};
   return &energy_extension_;
 }

@@ -10,6 +10,7 @@
 #include "kernels/contact/friction.hpp"
 #include "kernels/contact/wall.hpp"
 #include "motion.hpp"
+#include "traced_shape/dynamic_body.hpp"
 #include "traced_shape/traced_shape.hpp"
 
 namespace hapticd {

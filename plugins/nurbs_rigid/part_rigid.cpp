@@ -68,12 +68,11 @@ void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
   constexpr double kFirmPress = 2;
   constexpr double kStiffest = 5000;  // [N/m] the greatest stiffness that is advised [assumption: arms for the desk]
   const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
-  if (!(stiffness_ > 0) || host() == nullptr || host()->log == nullptr) return;
+  if (!(stiffness_ > 0)) return;
   const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
   const double least = contact::wallDepthAt({kStiffest, damping_, exponent_, depth_scale_}, force);
   const auto tell = [&](int level, const ThinWall& wall, const std::string& advice) {
-    host()->log(host(), level,
-                (part()->featureName(wall.feature) + thinWallText(wall, force, depth) + "; " + advice).c_str());
+    writeLog(level, part()->featureName(wall.feature) + thinWallText(wall, force, depth) + "; " + advice);
   };
   const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
   if (!wall) return;
@@ -94,7 +93,6 @@ void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
 /// means to turn about it. Another round face there that lies along the axis says that this was meant.
 void NurbsRigid::warnOfCrossedAxis() const {
   constexpr double kAtPivot = 1e-5, kAlong = 1e-3;  // [m], [rad]
-  if (host() == nullptr || host()->log == nullptr) return;
   const Eigen::Vector3d pivot(pivot_.data()), axis = Eigen::Vector3d(axis_.data()).normalized();
   std::string crossed;
   for (const brep::Placement& place : part()->placements()) {
@@ -114,7 +112,7 @@ void NurbsRigid::warnOfCrossedAxis() const {
           "axis: crosses at the pivot the axis of the round " + part()->featureName(place.first_feature + f) + text;
     }
   }
-  if (!crossed.empty()) host()->log(host(), HSP_LOG_WARNING, crossed.c_str());
+  if (!crossed.empty()) writeLog(HSP_LOG_WARNING, crossed);
 }
 
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {
@@ -133,14 +131,8 @@ dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) 
          {Eigen::Vector3d(0.5 * (a + b)), Eigen::Vector3d(0.5 * (b + c)), Eigen::Vector3d(0.5 * (c + a))})
       integral.add(middle, area / 3);
   }
-  constexpr double kEmptiest = 1e-6;
-  bounded = !part.open() && std::abs(integral.volume()) > kEmptiest * box.volume();
-  if (bounded) return integral.properties();
-  Eigen::AlignedBox3d thick = box;
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-3 * box.diagonal().norm());
-  thick.min() -= margin;
-  thick.max() += margin;
-  return dynamics::boxProperties(thick);
+  bounded = !part.open();
+  return integral.propertiesIn(box, bounded);
 }
 
 }  // namespace hapticd

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "kernels/contact/wall.hpp"
-#include "traced_shape/joint_end.hpp"
 
 namespace hapticd {
 
@@ -69,15 +68,13 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   const dynamics::RigidBodyLaw law = hingeLaw(inertia, down);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(std::remainder(angle_, 2 * M_PI), axis_world));
   const Eigen::Vector3d pivot_world = drawn.position + drawn.orientation * law.pivot;
-  body_.emplace(law, pivot_world + turn * (drawn.position - pivot_world), turn * drawn.orientation, gravity);
-  dynamics::validateSwing(body_->swingRate(), activation.rate_hz);
-  checkFelt(body_->swingRate(), activation.rate_hz);
+  body_.emplace(law, MovingFrame{pivot_world + turn * (drawn.position - pivot_world), turn * drawn.orientation},
+                gravity, activation);
+  checkFelt(body_->body().swingRate(), activation.rate_hz);
   body_->setVelocity(Eigen::Vector3d::Zero(), rate_ * axis.normalized());
   const double half = std::sin(angle_ / 2);
   lifted_ = 2 * mass_ * pull.norm() * length_ * half * half;
   stored_ = 0;
-  probes_.emplace(std::max(activation.max_probes, 1u));
-  presses_.emplace(std::max(activation.max_probes, 1u));
   const contact::WallLaw wall{stiffness_, contact_damping_, exponent_, depth_scale_};
   report.max_stiffness = stiffness_ > 0 ? contact::wallSlopeAt(wall, forceToClaimFor(activation, kUnknownForce)) : 0;
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
@@ -86,31 +83,22 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
 
 void Pendulum::reset() noexcept HSP_RT {
   TracedShape::reset();
-  if (presses_) presses_->release();
+  if (body_) body_->release();
   stored_ = 0;
 }
 
-hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
-  const MovingFrame before = MovingFrame::of(*step.pose);
-  const auto velocity_at = [this](const Eigen::Vector3d& point) { return body_->velocityAt(point); };
-  if (step.dt_s > 0) body_->step(presses_->predict(step, before, velocity_at), step.dt_s);
-  const MovingFrame now = {body_->position(), body_->orientation(), body_->linear(), body_->angular()};
-  now.write(*step.pose);
-  const hsp_step moved = probes_->step(step, before, now);
-  const uint32_t end = endFlags(body_->stop());
-  hsp_status worst = HSP_OK;
+hsp_status Pendulum::step(const hsp_step& given) noexcept HSP_RT {
+  const hsp_step step = body_->move(given);
+  const uint32_t end = body_->endFlags();
   stored_ = 0;
-  for (uint32_t i = 0; i < moved.count; ++i) {
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const hsp_status status = press(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact, now);
+  return touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+    const hsp_status status = press(probe, step, contact);
     contact.flags |= end;
-    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
-  }
-  return worst;
+    return status;
+  });
 }
 
-hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
-                           const MovingFrame& now) noexcept HSP_RT {
+hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
   const Touch touch = trace(probe, step, contact);
   if (!touch.traced) return touch.status;
   dynamics::LastContact pressing;
@@ -119,7 +107,7 @@ hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_con
   pressing.normal = touch.normal;
   pressing.depth = touch.depth;
   pressing.law = {stiffness_, contact_damping_, exponent_, depth_scale_};
-  presses_->remember(indexOf(probe, step), pressing, now);
+  body_->remember(indexOf(probe, step), pressing);
   if (touch.depth <= 0) return touch.status;
   const double closing_speed = -Eigen::Vector3d(probe.velocity).dot(touch.normal);
   const contact::WallForce wall = contact::wallForce(pressing.law, touch.depth, closing_speed);
@@ -133,7 +121,7 @@ const void* Pendulum::extension(const char* name) {
   if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<Pendulum>(name);
   energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                          const Pendulum& self = *reinterpret_cast<Pendulum*>(shape);
-                         return self.body_->energy() + self.lifted_ + self.stored_;
+                         return self.body_->body().energy() + self.lifted_ + self.stored_;
                        }};
   return &energy_extension_;
 }

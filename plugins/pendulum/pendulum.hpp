@@ -5,8 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/dynamics/rigid_body.hpp"
-#include "traced_shape/contact_predictor.hpp"
+#include "traced_shape/dynamic_body.hpp"
 #include "traced_shape/traced_shape.hpp"
 
 namespace hapticd {
@@ -53,24 +52,21 @@ class Pendulum final : public TracedShape {
 
   void activate(const hsp_activation& activation, hsp_report& report);
   void reset() noexcept HSP_RT;
-  hsp_status step(const hsp_step& step) noexcept HSP_RT;
+  hsp_status step(const hsp_step& given) noexcept HSP_RT;
   const void* extension(const char* name);
 
  private:
   dynamics::RigidBodyLaw hingeLaw(double inertia, const Eigen::Vector3d& down) const;
-  hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
-                   const MovingFrame& now) noexcept HSP_RT;
+  hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
 
   double stiffness_ = 800, contact_damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   std::array<double, 3> pivot_{}, axis_{};
   double mass_ = 1, inertia_ = 0, length_ = 0.25, damping_ = 0, angle_ = 0, rate_ = 0;
   std::vector<double> limits_;
 
-  std::optional<dynamics::RigidBody> body_;
+  std::optional<DynamicBody> body_;
   double lifted_ = 0;  ///< [J] potential energy at the start above that at angle 0, from which body_ does not count
   double stored_ = 0;  ///< [J] energy stored in the surface
-  std::optional<MovedProbes> probes_;
-  std::optional<ContactPredictor> presses_;
   hsp_ext_energy energy_extension_{};
 };
 

@@ -80,19 +80,16 @@ hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
   const MovingFrame now = frame(step.dt_s);
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);
-  hsp_status worst = HSP_OK;
   stored_ = curve_->energy(button_.position());
-  for (uint32_t i = 0; i < moved.count; ++i) {
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const Touch touch = trace(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact);
-    if (touch.status < 0 || (worst == HSP_OK && touch.status > 0)) worst = touch.status;
+  return touchEach(moved, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+    const Touch touch = trace(probe, moved, contact);
     contact.flags |= clicked;
-    if (!touch.traced || touch.depth <= 0) continue;
+    if (!touch.traced || touch.depth <= 0) return touch.status;
     Eigen::Map<Eigen::Vector3d>(contact.force) = stiffness_ * touch.depth * touch.normal;
     contact.stiffness = stiffness_;
     stored_ += stiffness_ * touch.depth * touch.depth / 2;
-  }
-  return worst;
+    return touch.status;
+  });
 }
 
 MovingFrame PushButton::frame(double dt) noexcept HSP_RT {

@@ -70,7 +70,7 @@ struct TemplateBall : hapticd::Shape {
   /// Called in every tick for each probe: no allocation, lock, system call or exception is allowed. All values are in
   /// the model frame and in SI units.
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
-    Grip& grip = grips_[numberOf(probe, step)];
+    Grip& grip = grips_[hapticd::indexOf(probe, step)];
     if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) grip.holds = false;
     if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK;  // no sample: no force
     const double* p = probe.position;
@@ -91,13 +91,6 @@ struct TemplateBall : hapticd::Shape {
   }
 
  private:
-  /// Returns the index of a probe in its step; it is below hsp_activation::max_probes. Records of probes are in_stride
-  /// bytes apart.
-  static size_t numberOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
-    const auto bytes = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
-    return static_cast<size_t>(bytes) / step.in_stride;
-  }
-
   /// Adds friction: a spring from the held point to the tip, with a force of at most friction * push. Beyond this force
   /// the held point slides along.
   void rub(Grip& grip, const double* p, double push, hsp_contact& contact) const noexcept HSP_RT {

@@ -179,7 +179,7 @@ class Gaps {
       : model_(model), file_(file), odd_(odd), known_(std::move(known)) {
     for (int patch = 0; patch < model.patchCount(); ++patch)
       for (int side = 0; side < trace::kSides; ++side)
-        if (model.patch(patch).sides[static_cast<std::size_t>(side)].kind == trace::SideKind::kFree) {
+        if (model.patch(patch).side(side).kind == trace::SideKind::kFree) {
           for (const int end : {0, 1}) free_at_[cornerOf({patch, side}, end)].push_back({{patch, side}, end});
           free_.push_back({patch, side});
         }
@@ -249,7 +249,7 @@ class Gaps {
     constexpr std::size_t kRound = 3;
     std::set<int> beside;
     for (int side = 0; side < trace::kSides; ++side) {
-      const bool open = model_.patch(patch).sides[static_cast<std::size_t>(side)].kind == trace::SideKind::kFree;
+      const bool open = model_.patch(patch).side(side).kind == trace::SideKind::kFree;
       const int other = open ? besideOf({patch, side}) : -1;
       if (other < 0) return;
       beside.insert(other);

@@ -105,19 +105,15 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
   const std::string wrong = unknownInstance(part, instance_);
   if (!wrong.empty()) throw std::invalid_argument(wrong);
   part_ = std::make_unique<brep::Model>(std::move(part), options);
-  if (host() != nullptr && host()->log != nullptr) {
-    if (!lost.empty()) host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + lost).c_str());
-    for (const std::string& warning : part_->warnings())
-      host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
-    if (const std::string odd = oddPlace(part_->bounds(), activation.pose); !odd.empty())
-      host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + odd).c_str());
-    for (const std::string& line : instancesOf(*part_)) host()->log(host(), HSP_LOG_DEBUG, line.c_str());
-    if (sides_ == kFront && part_->open())
-      host()->log(host(), HSP_LOG_WARNING,
-                  (geometry_ + ": is not closed, but with sides: front everything behind it counts as solid; give "
-                               "sides: both, or leave sides out")
-                      .c_str());
-  }
+  const auto warn = [this](const std::string& what) { writeLog(HSP_LOG_WARNING, geometry_ + ": " + what); };
+  if (!lost.empty()) warn(lost);
+  for (const std::string& warning : part_->warnings()) warn(warning);
+  if (const std::string odd = oddPlace(part_->bounds(), activation.pose); !odd.empty()) warn(odd);
+  for (const std::string& line : instancesOf(*part_)) writeLog(HSP_LOG_DEBUG, line);
+  if (sides_ == kFront && part_->open())
+    warn(
+        "is not closed, but with sides: front everything behind it counts as solid; give sides: both, or leave sides "
+        "out");
   if (sides_ == kAuto) sides_ = part_->open() ? kBoth : kFront;
   const uint32_t probes = std::max(activation.max_probes, 1u);
   part_tracers_.clear();

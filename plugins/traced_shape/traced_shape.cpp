@@ -20,12 +20,11 @@ namespace {
 constexpr double kFarthestMesh = 1e-6;  // [m] least chord error of a mesh for drawing
 
 /// Reads a model file, and logs what is doubtful in one with problems.
-ModelFile readLogged(const std::string& text, const std::string& file, const hsp_host* host) {
+ModelFile readLogged(const std::string& text, const std::string& file, const Shape& shape) {
   try {
     return parseModelFile(text, file);
   } catch (const ModelFileError& error) {
-    for (const std::string& odd : error.odd)
-      if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_WARNING, ("geometry: " + odd).c_str());
+    for (const std::string& odd : error.odd) shape.writeLog(HSP_LOG_WARNING, "geometry: " + odd);
     throw;
   }
 }
@@ -50,7 +49,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   const std::string text = readGeometry(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
   if (sides_ == kAuto) sides_ = kFront;
-  ModelFile file = readLogged(text, geometry_, host());
+  ModelFile file = readLogged(text, geometry_, *this);
   if (!instance_.empty())
     throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
                                 " is a model file, which has no instances; geometry must be a part (.hpart)");
@@ -58,10 +57,9 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   options.edges = std::move(file.edges);
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   model_ = std::make_unique<trace::Model>(file.surfaces, options);
-  if (host() != nullptr && host()->log != nullptr)
-    for (const auto& warnings : {&warnOfJoints, &warnOfModel})
-      for (const std::string& odd : warnings(file, *model_, text, geometry_))
-        host()->log(host(), HSP_LOG_WARNING, ("geometry: " + odd).c_str());
+  for (const auto& warnings : {&warnOfJoints, &warnOfModel})
+    for (const std::string& odd : warnings(file, *model_, text, geometry_))
+      writeLog(HSP_LOG_WARNING, "geometry: " + odd);
   const uint32_t probes = std::max(activation.max_probes, 1u);
   tracers_.clear();
   tracers_.reserve(probes);
@@ -91,9 +89,7 @@ void TracedShape::takeFormerNames() {
   if (hold_ == kNotGiven) return;
   contact_hysteresis_ = std::max(hold_, 0.0);
   hold_ = kNotGiven;
-  if (host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING,
-                "hold: this parameter is now called contact_hysteresis; write contact_hysteresis instead");
+  writeLog(HSP_LOG_WARNING, "hold: this parameter is now called contact_hysteresis; write contact_hysteresis instead");
 }
 
 contact::ContactRule TracedShape::contactRule() const noexcept HSP_RT {

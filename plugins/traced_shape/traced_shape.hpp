@@ -83,11 +83,6 @@ class TracedShape : public Shape {
   void load(const hsp_activation& activation, hsp_report& report);
   /// [rt] Traces one probe, and sets point, normal, depth, parameters and flags of its contact. The forces stay zero.
   Touch trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
-  /// [rt] Returns the index of a probe of this step.
-  static uint32_t indexOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
-    const auto offset = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
-    return step.in_stride == 0 ? 0 : static_cast<uint32_t>(offset / static_cast<std::ptrdiff_t>(step.in_stride));
-  }
   /// [rt] Call it after a probe was pushed through a shell: from now on this probe feels the shell's other side.
   void popThrough(uint32_t probe) noexcept HSP_RT;
   const trace::Model& model() const noexcept { return *model_; }  ///< the traced model; valid only if part() is null

@@ -41,9 +41,7 @@ class Arm : public Device, public Parameters {
     LinkSettings settings;
     settings.address = static_cast<const T*>(this)->address();
     settings.session = session;
-    settings.log = [this](int level, const std::string& text) {
-      if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
-    };
+    settings.log = [this](int level, const std::string& text) { writeLog(level, text); };
     const Address address = settings.address;
     if (session.calibration == Calibration::kPose)
       settings.zero = [address, count = joints()](const Identity& identity) {
@@ -117,7 +115,7 @@ class Arm : public Device, public Parameters {
       try {
         prepare();
       } catch (const std::exception& e) {
-        detail::logError(host(), e.what());
+        writeLog(HSP_LOG_ERROR, e.what());
         return nullptr;
       }
       kinematics_ = kinematics::Extension<T>::of(*arm_);
@@ -262,7 +260,7 @@ class Arm : public Device, public Parameters {
   static hsp_status capture(hdv_device* device, hdv_take_transfer take, void* who) {
     T& self = *reinterpret_cast<T*>(device);
     const auto done = self.link_ ? self.link_->capture(take, who) : Result<void>(Error{"the arm is not open"});
-    if (!done) detail::logError(self.host(), done.error());
+    if (!done) self.writeLog(HSP_LOG_ERROR, done.error());
     return done ? HSP_OK : HSP_E_IO;
   }
 
@@ -291,7 +289,7 @@ class Arm : public Device, public Parameters {
     try {
       return self.method == static_cast<int>(Calibration::kPose) ? self.calibratePose() : self.calibrateDevice();
     } catch (const std::exception& e) {
-      detail::logError(self.host(), e.what());
+      self.writeLog(HSP_LOG_ERROR, e.what());
       return HSP_E_IO;
     }
   }
@@ -300,9 +298,9 @@ class Arm : public Device, public Parameters {
     JointArray at{};
     std::copy(pose.begin(), pose.end(), at.begin());
     auto offset = link_->calibrateAt(at);
-    if (!offset) return detail::logError(host(), offset.error()), HSP_E_IO;
+    if (!offset) return writeLog(HSP_LOG_ERROR, offset.error()), HSP_E_IO;
     auto stored = storeZero(stateFolder(), static_cast<const T*>(this)->address(), link_->identity(), *offset, joints_);
-    if (!stored) detail::logError(host(), stored.error());
+    if (!stored) writeLog(HSP_LOG_ERROR, stored.error());
     return stored ? HSP_OK : HSP_E_IO;
   }
 
@@ -316,9 +314,9 @@ class Arm : public Device, public Parameters {
     }
     link_->calibrateByDevice(false);
     if (sample_.calibrated) return HSP_OK;
-    detail::logError(host(),
-                     "found no zero within 30 s\n  the arm stays without force\n  fix: move every joint over its whole "
-                     "range, then try again");
+    writeLog(HSP_LOG_ERROR,
+             "found no zero within 30 s\n  the arm stays without force\n  fix: move every joint over its whole "
+             "range, then try again");
     return HSP_E_IO;
   }
 

@@ -9,7 +9,6 @@
 #include "base/clock.hpp"
 #include "cli/device/file.hpp"
 #include "cli/support/command.hpp"
-#include "document/reader.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::cli {

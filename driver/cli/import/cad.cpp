@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/regular_file.hpp"
+#include "base/short_number.hpp"
 #include "cli/support/command.hpp"
 
 extern char** environ;
@@ -47,20 +48,14 @@ std::string whole(double number) {
   return std::to_string(static_cast<long long>(number));
 }
 
-std::string exact(double number) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", number);
-  return text;
-}
-
 std::vector<std::string> wordsOf(const std::string& program, const CadImport& options) {
   std::vector<std::string> words{program, "--memory", whole(options.memory_mb), "--time", whole(options.time_s)};
   if (options.check) words.emplace_back("--check");
   if (options.json) words.emplace_back("--json");
   if (!options.check) words.insert(words.end(), {"--out", options.out});
   const importing::Placement& placement = options.placement;
-  words.insert(words.end(), {"--scale", exact(placement.scale), "--up", std::string(1, placement.up)});
-  if (placement.fit > 0) words.insert(words.end(), {"--fit", exact(placement.fit)});
+  words.insert(words.end(), {"--scale", withDigits(placement.scale, 17), "--up", std::string(1, placement.up)});
+  if (placement.fit > 0) words.insert(words.end(), {"--fit", withDigits(placement.fit, 17)});
   if (placement.center) words.emplace_back("--center");
   words.insert(words.end(), {"--", options.file});
   return words;

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "base/clock.hpp"
+#include "base/happens_within.hpp"
 #include "control/client.hpp"
 
 namespace hapticd::control {
@@ -27,11 +27,7 @@ bool fileExists(const std::string& file) {
 template <class Done>
 bool within(double seconds, Done&& done) {
   constexpr Nanoseconds kPause = 10'000'000;
-  RealClock clock(0);
-  const Nanoseconds end = clock.now() + static_cast<Nanoseconds>(seconds * 1e9);
-  for (; clock.now() < end; clock.waitUntil(clock.now() + kPause))
-    if (done()) return true;
-  return done();
+  return happensWithin(static_cast<Nanoseconds>(seconds * 1e9), kPause, done);
 }
 
 }  // namespace

@@ -161,19 +161,18 @@ class FieldReader {
     if (value->is_string()) to = value->get<std::string>();
     if (!isMarkText(to)) complain(key, expected(key));
   }
-  void number(const char* key, double low, double high, double& to) {
+  void number(const char* key, double low, double high, double& to, bool whole = false) {
     const Json* value = find(key);
     if (value == nullptr) return;
     const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= low && given <= high)) return complain(key, expected(key));
+    if (!(given >= low && given <= high) || (whole && given != std::floor(given))) return complain(key, expected(key));
     to = given;
   }
-  void whole(const char* key, double low, double high, double& to) {
-    const Json* value = find(key);
-    if (value == nullptr) return;
-    const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= low && given <= high && given == std::floor(given))) return complain(key, expected(key));
-    to = given;
+  template <class T>
+  void whole(const char* key, double low, double high, T& to) {
+    double given = static_cast<double>(to);
+    number(key, low, high, given, true);
+    to = static_cast<T>(given);
   }
   void numberOrWord(const char* key, double low, double high, double& to, std::string& word) {
     const Json* value = find(key);
@@ -317,11 +316,8 @@ void readValues(FieldReader& take, Request& request) {
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);
   take.whole("after", 0, kMostFrames, request.after);
-  double number = 0, triangles = 0;
-  take.whole("number", 0, 4294967295.0, number);
-  take.whole("triangles", kFewestTriangles, kMostTriangles, triangles);
-  request.number = static_cast<uint32_t>(number);
-  request.triangles = static_cast<uint32_t>(triangles);
+  take.whole("number", 0, 4294967295.0, request.number);
+  take.whole("triangles", kFewestTriangles, kMostTriangles, request.triangles);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Checks the results of a module's kinematic functions: they must be finite, must fit the size of an arm, and must not
 /// be written beyond the memory for them.
-#include <cstdio>
 #include <functional>
 
+#include "base/short_number.hpp"
 #include "host/class_table.hpp"
 #include "host/kinematics_calls.hpp"
 #include "host/kinematics_check.hpp"
@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kFarthest = 100;  ///< [m] no arm reaches this far: such numbers are in mm, or were never set
 constexpr double kUnit = 0.02;     ///< allowed error of a quaternion's length; rounding causes less
-
-std::string fourDigits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 std::string wrongTable(const hdv_ext_kinematics& kinematics) {
   if (kinematics.joint_count == 0 || kinematics.joint_count > HDV_MAX_JOINTS)
@@ -67,10 +61,10 @@ struct Answers {
 std::string wrongTip(const Tip& tip, const Joints& q, Eigen::Index joints) {
   const std::string at = " with the joints at " + placeText(q, joints);
   if (!(std::abs(tip.length - 1) <= kUnit))
-    return "has kinematics whose forward() gives an orientation of length " + fourDigits(tip.length) + at +
+    return "has kinematics whose forward() gives an orientation of length " + withDigits(tip.length, 4) + at +
            "; expected a unit quaternion w, x, y, z: 1, 0, 0, 0 for an arm that does not turn its tip";
   if (!(tip.position.norm() <= kFarthest))
-    return "has kinematics whose forward() puts the tip " + fourDigits(tip.position.norm()) + " m away" + at +
+    return "has kinematics whose forward() puts the tip " + withDigits(tip.position.norm(), 4) + " m away" + at +
            ", farther than any arm reaches; the position must be in m";
   return "";
 }

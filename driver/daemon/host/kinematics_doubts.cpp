@@ -2,6 +2,7 @@
 /// Finds mistakes in kinematics that cause no fault in a run.
 #include <cstdio>
 
+#include "base/short_number.hpp"
 #include "host/class_table.hpp"
 #include "host/kinematics_calls.hpp"
 #include "host/kinematics_check.hpp"
@@ -203,12 +204,9 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
     doubts.push_back(
         "its forward() turns the tip, but rows 3 to 5 of its Jacobian are 0 everywhere: no torque of a shape reaches "
         "the motors; expected angular rows, or an orientation that does not change");
-  if (farthest > kFar) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", farthest);
-    doubts.push_back("its forward() puts the tip " + std::string(text) +
+  if (farthest > kFar)
+    doubts.push_back("its forward() puts the tip " + withDigits(farthest, 4) +
                      " m away, farther than a hand can move an arm; the position must be in m");
-  }
   return doubts;
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Says where a parameter of a module belongs, if a device file has it at the top.
 #pragma once
-
+#include "description/class_info.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
-#include "host/catalog.hpp"
 
 namespace hapticd::scene::detail {
 

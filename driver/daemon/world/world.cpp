@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "world/world.hpp"
 
-#include <algorithm>
-
 #include "servo/velocity/probe_velocity.hpp"
 #include "world/instructions.hpp"
 #include "world/setup_calls.hpp"
@@ -17,8 +15,7 @@ hsp_pose startPose(const scene::Model& model) {
   const scene::Pose& start = model.kinematic && !model.path.empty() ? model.path.front().pose : model.pose;
   hsp_pose pose{};
   Eigen::Map<Eigen::Vector3d>(pose.position) = start.position;
-  const Eigen::Quaterniond& q = start.orientation;
-  pose.orientation[0] = q.w(), pose.orientation[1] = q.x(), pose.orientation[2] = q.y(), pose.orientation[3] = q.z();
+  storeQuaternion(start.orientation, pose.orientation);
   return pose;
 }
 
@@ -69,7 +66,6 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
     if (!shape) return Error{shape.error()};
     const hsp_report& report = (*shape)->report();
     world->needs_ |= report.flags;
-    world->max_stiffness_ = std::max(world->max_stiffness_, report.max_stiffness);
     world->locked_bytes_ += report.locked_bytes;
     models.push_back(shape->get());
     poses.push_back(activation.pose);

@@ -68,8 +68,6 @@ class World {
 
   /// True if some shape reads velocities, so that they must be estimated.
   bool needsVelocity() const { return (needs_ & HSP_R_VELOCITY) != 0; }
-  /// Returns the largest stiffness [N/m] that a model claims.
-  double maxStiffness() const { return max_stiffness_; }
 
   /// Returns how many bytes must be locked in memory for the models, as the models report it.
   uint64_t lockedBytes() const { return locked_bytes_; }
@@ -82,7 +80,6 @@ class World {
   std::unique_ptr<sim::Proximity> proximity_;
   std::unique_ptr<Core> core_;
   uint32_t needs_ = 0;
-  double max_stiffness_ = 0;
   uint64_t locked_bytes_ = 0;
 };
 

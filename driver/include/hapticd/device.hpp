@@ -31,6 +31,8 @@ class Device {
   void close() {}  ///< [main] called if open: releases the hardware
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
   const hsp_host* host() const { return host_; }                   ///< [any] not valid in the constructor
+  /// [main] Writes a text to the log of the host, if there is one. The level is HSP_LOG_WARNING or the like.
+  void writeLog(int32_t level, const std::string& text) const { detail::writeLog(host_, level, text); }
 
  private:
   template <class T>

@@ -159,8 +159,11 @@ inline std::vector<double> numbersIn(const char* text) {
   return numbers;
 }
 
+inline void writeLog(const hsp_host* host, int32_t level, const std::string& text) {
+  if (host != nullptr && host->log != nullptr) host->log(host, level, text.c_str());
+}
 inline void logError(const hsp_host* host, const std::string& text) {
-  if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
+  writeLog(host, HSP_LOG_ERROR, text);
 }
 
 /// [main] Calls `action`. The text of an exception, after `before`, becomes the error that the user reads. Returns

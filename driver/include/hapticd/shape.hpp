@@ -34,6 +34,25 @@ inline void reportJumps(hsp_report& report, double newtons) {
   report.max_jump = newtons;
 }
 
+/// [any] Returns the index of a probe in its step, which is below hsp_activation::max_probes.
+inline uint32_t indexOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
+  const auto bytes = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
+  return step.in_stride == 0 ? 0 : static_cast<uint32_t>(bytes / static_cast<ptrdiff_t>(step.in_stride));
+}
+
+/// [rt] Calls `touch(probe, contact, index)` for each probe of a step. Returns the status for the whole step: the first
+/// failure, or HSP_DEGRADED if an answer is coarser than asked.
+template <class Touch>
+hsp_status touchEach(const hsp_step& step, const Touch& touch) noexcept HSP_RT {
+  hsp_status worst = HSP_OK;
+  for (uint32_t i = 0; i < step.count; ++i) {
+    const hsp_status status = touch(*HSP_AT(const hsp_probe, step.in, step.in_stride, i),
+                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i), i);
+    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
+  }
+  return worst;
+}
+
 /// Base class of shapes. The host creates and destroys instances. A derived class T has
 ///   static constexpr ShapeInfo kInfo;
 ///   static constexpr auto fields();                            std::array<Field<T>, N>, one line per parameter
@@ -50,6 +69,8 @@ class Shape {
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
   void changed() noexcept HSP_RT {}               ///< [rt] called when live parameters have new values, before step()
   const hsp_host* host() const { return host_; }  ///< [any] not valid in the constructor
+  /// [main][sim] Writes a text to the log of the host, if there is one. The level is HSP_LOG_WARNING or the like.
+  void writeLog(int32_t level, const std::string& text) const { detail::writeLog(host_, level, text); }
 
  private:
   template <class T>
@@ -105,13 +126,8 @@ struct ShapeClass {
           "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
           "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
           "is public");
-      hsp_status worst = HSP_OK;
-      for (uint32_t i = 0; i < step->count; ++i) {
-        const hsp_status status = self(shape).touch(*HSP_AT(const hsp_probe, step->in, step->in_stride, i), *step,
-                                                    *HSP_AT(hsp_contact, step->out, step->out_stride, i));
-        if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
-      }
-      return worst;
+      return touchEach(*step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t)
+                                  HSP_RT { return self(shape).touch(probe, *step, contact); });
     }
   }
   static const void* extension(hsp_shape* shape, const char* name) { return self(shape).extension(name); }

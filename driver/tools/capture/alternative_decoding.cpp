@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "base/short_number.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -48,12 +49,6 @@ size_t jumpsOf(const Field& field, const std::vector<double>& positions, double 
   return count;
 }
 
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string typeOf(const Field& field, bool other) {
   const bool whole = (field.type == Type::kSigned) != other;
   return (whole ? "i" : "u") + std::to_string(field.bits);
@@ -64,8 +59,8 @@ std::string wordsOf(const Field& field, const Decoding& reading) {
   std::string words;
   const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
   if (reading.code == Decoding::Code::kOtherSign) add("type: " + typeOf(field, true));
-  if (reading.turn < 0) add("scale: " + shortNumber(-field.scale));
-  if (reading.offset != 0) add("offset: " + shortNumber(field.offset + reading.turn * reading.offset * field.scale));
+  if (reading.turn < 0) add("scale: " + withDigits(-field.scale, 6));
+  if (reading.offset != 0) add("offset: " + withDigits(field.offset + reading.turn * reading.offset * field.scale, 6));
   return words;
 }
 
@@ -128,7 +123,7 @@ std::string alternativeDecoding(const Field& field, const std::vector<double>& p
     const auto as_other = allAs(field, reading, positions);
     if (leavesStops(as_other, stops) || jumpsOf(field, as_other, kWholeRange / 3) > 0) continue;
     const auto [least, most] = std::minmax_element(positions.begin(), positions.end());
-    return "goes from " + shortNumber(*least) + " to " + shortNumber(*most) +
+    return "goes from " + withDigits(*least, 6) + " to " + withDigits(*most, 6) +
            ", beyond its arm.limits; it stays within them with " + wordsOf(field, reading);
   }
   return "";

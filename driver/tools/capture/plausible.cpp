@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "base/short_number.hpp"
 #include "capture/alternative_decoding.hpp"
 #include "capture/byte_order_hint.hpp"
 
@@ -33,9 +33,7 @@ struct JointSeries {
 };
 
 std::string number(double value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return withDigits(value, 3);
 }
 
 Stops stopsOf(const ArmFacts& arm, size_t joint) {

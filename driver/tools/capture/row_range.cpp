@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
+
+#include "base/short_number.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -13,9 +14,7 @@ using codec::Field;
 using codec::Role;
 
 std::string textOf(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
+  return withDigits(value, 10);
 }
 
 bool isWhole(double value) {

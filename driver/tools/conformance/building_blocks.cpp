@@ -2,7 +2,8 @@
 #include "conformance/building_blocks.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include "base/short_number.hpp"
 
 namespace hapticd::conformance {
 
@@ -20,15 +21,11 @@ Made::Made(const Recipe& recipe, uint32_t probes, Time time) {
 }
 
 std::string text(double value) {
-  char words[32];
-  std::snprintf(words, sizeof words, "%.6g", value);
-  return words;
+  return withDigits(value, 6);
 }
 
 std::string roughly(double value) {
-  char words[32];
-  std::snprintf(words, sizeof words, "%.2g", value);
-  return words;
+  return withDigits(value, 2);
 }
 
 std::string text(const Vector3d& p) {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
+#include "base/short_number.hpp"
 #include "scene/path_rows.hpp"
 #include "servo/core/minimum_jerk.hpp"
 #include "servo/safety/passivity/isolated.hpp"
@@ -17,9 +17,7 @@ constexpr double kUnfelt = 5;  ///< [N/m] at a depth of 10 mm this gives less fo
 constexpr double kBuzz = 0.1;  ///< [N] a force step between neighbouring counts that a hand feels
 
 std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.4g", value);
-  return buffer;
+  return withDigits(value, 4);
 }
 
 /// Rounds down to two digits, as a person would write a setting.

@@ -59,9 +59,4 @@ PredictedContact predict(const LastContact& last, const Vector3d& probe_now, dou
   return press;
 }
 
-Vector3d forceAfter(const PredictedContact& press, const Vector3d& change) noexcept {
-  const Vector3d force = press.force - press.give * change;
-  return force - std::max(0.0, press.outward.dot(force)) * press.outward;
-}
-
 }  // namespace hapticd::dynamics

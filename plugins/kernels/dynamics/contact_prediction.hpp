@@ -36,7 +36,7 @@ struct PredictedContact {
   /// [N s/m] reduction of the force per change of the point's velocity
   Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
   /// True if the probe draws back so fast that the surface does not push: the damper's share of `force` then pulls.
-  /// Such a contact acts only if the body comes after the probe in this step, so that forceAfter() is a push. Without
+  /// Such a contact acts only if the body comes after the probe in this step, so that its force is a push. Without
   /// it a light body on a spring would strike the hand that lets it go (test
   /// Coupling.ALightBodyIsNoBlowToTheHandThatLetsItGo).
   bool lets_go = false;
@@ -48,9 +48,5 @@ struct PredictedContact {
 /// @param point_velocity velocity of the body at the contact [m/s]
 PredictedContact predict(const LastContact& last, const Eigen::Vector3d& probe_now, double closing_speed,
                          const Eigen::Vector3d& point_velocity, double dt) noexcept;
-
-/// [rt] Returns the force [N] on the body if the velocity of the contact point changes by `change` [m/s] in the step.
-/// The force never pulls the body along `outward`.
-Eigen::Vector3d forceAfter(const PredictedContact& press, const Eigen::Vector3d& change) noexcept;
 
 }  // namespace hapticd::dynamics

@@ -2,6 +2,7 @@
 #include "kernels/dynamics/mass_properties.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -37,6 +38,17 @@ MassProperties SolidIntegral::properties() const noexcept {
   all.center = origin_ + center;
   all.inertia = spread.trace() * Matrix3d::Identity() - spread;
   return all;
+}
+
+MassProperties SolidIntegral::propertiesIn(const Eigen::AlignedBox3d& box, bool& bounded) const noexcept {
+  constexpr double kEmptiest = 1e-6;  // share of the box; a smaller volume may be only rounding
+  bounded = bounded && std::abs(volume_) > kEmptiest * box.volume();
+  if (bounded) return properties();
+  Eigen::AlignedBox3d thick = box;  // a flat model must have moments of inertia too
+  const Vector3d margin = Vector3d::Constant(1e-3 * box.diagonal().norm());
+  thick.min() -= margin;
+  thick.max() += margin;
+  return boxProperties(thick);
 }
 
 namespace {

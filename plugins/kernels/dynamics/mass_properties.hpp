@@ -26,6 +26,9 @@ class SolidIntegral {
   double volume() const noexcept { return volume_; }  ///< [any] [m^3]; negative if the surface is inside out
   /// [any] Returns the properties of the solid that the pieces enclose. volume() must not be 0.
   MassProperties properties() const noexcept;
+  /// [any] Returns the properties of the solid if the pieces enclose one, otherwise those of the box around them.
+  /// @param bounded in: the surface is closed; out: and it encloses a volume that is not only rounding
+  MassProperties propertiesIn(const Eigen::AlignedBox3d& box, bool& bounded) const noexcept;
 
  private:
   Eigen::Vector3d origin_;

@@ -2,8 +2,6 @@
 #include "kernels/dynamics/oscillator.hpp"
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace hapticd::dynamics {
 namespace {
@@ -30,7 +28,7 @@ OscillatorStep underdamped(double half, double rate, double square, double dt) {
 
 }  // namespace
 
-OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept {
+OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt) noexcept {
   const double half = damping / (2 * mass);
   const double square = stiffness / mass;
   if (half == 0 && square == 0) return {1, dt, 0, 1};
@@ -39,17 +37,6 @@ OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiff
   const double difference = (half - natural) * (half + natural);
   if (difference >= 0) return overdamped(half, std::sqrt(difference), square, dt);
   return underdamped(half, std::sqrt(-difference), square, dt);
-}
-
-OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt) {
-  const bool good = std::isfinite(mass) && mass > 0 && std::isfinite(damping) && damping >= 0 &&
-                    std::isfinite(stiffness) && stiffness >= 0 && std::isfinite(dt) && dt >= 0;
-  if (!good)
-    throw std::invalid_argument(
-        "oscillator: mass " + std::to_string(mass) + " kg, damping " + std::to_string(damping) + " N s/m, stiffness " +
-        std::to_string(stiffness) + " N/m, step " + std::to_string(dt) +
-        " s; the mass must be above 0, the other numbers must not be negative, and all must be finite");
-  return oscillatorStepUnchecked(mass, damping, stiffness, dt);
 }
 
 }  // namespace hapticd::dynamics

@@ -12,14 +12,9 @@ struct OscillatorStep {
   double vx = 0, vv = 1;  ///< v' = vx x + vv v
 };
 
-/// [main] Returns the step over dt [s] for mass [kg], damping [N s/m] and stiffness [N/m], or for other units in which
-/// b/m is in 1/s and k/m in 1/s^2.
-/// @throws std::invalid_argument unless mass > 0, damping >= 0, stiffness >= 0, dt >= 0 and all are finite.
-OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt);
-
-/// [rt] Does the same as oscillatorStep(), but does not check the arguments. Use it for a dt that varies from tick to
-/// tick.
-OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept;
+/// [rt] Returns the step over dt [s] for mass > 0 [kg], damping >= 0 [N s/m] and stiffness >= 0 [N/m], or for other
+/// units in which b/m is in 1/s and k/m in 1/s^2. The numbers must be finite.
+OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt) noexcept;
 
 /// [rt] Advances a motion about x = 0 without external force by one step. With a constant force f, pass x - f/k for x.
 /// T is a scalar, or an Eigen vector or array.

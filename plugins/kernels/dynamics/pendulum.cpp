@@ -102,8 +102,4 @@ double period(const PendulumLaw& law, double amplitude) noexcept {
   return 2 * M_PI / (a * std::sqrt(law.frequencySquared()));
 }
 
-double separatrixRate(const PendulumLaw& law) noexcept {
-  return 2 * std::sqrt(law.frequencySquared());
-}
-
 }  // namespace hapticd::dynamics

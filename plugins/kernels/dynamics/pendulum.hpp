@@ -45,7 +45,4 @@ double energy(const PendulumLaw& law, const PendulumState& state) noexcept;
 /// [any] Returns the period [s] of a free swing of `amplitude` [rad], by the arithmetic-geometric mean.
 double period(const PendulumLaw& law, double amplitude) noexcept;
 
-/// [any] Returns the angular velocity [rad/s] that the pendulum needs at its lowest point to go all the way round.
-double separatrixRate(const PendulumLaw& law) noexcept;
-
 }  // namespace hapticd::dynamics

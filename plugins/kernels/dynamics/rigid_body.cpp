@@ -26,7 +26,7 @@ void drive(double mass, double damping, double stiffness, const Vector3d& force,
   if (stiffness > 0) {
     const Vector3d rest = force / stiffness;
     Vector3d from_rest = x - rest;
-    advance(oscillatorStepUnchecked(mass, damping, stiffness, dt), from_rest, v);
+    advance(oscillatorStep(mass, damping, stiffness, dt), from_rest, v);
     x = rest + from_rest;
     return;
   }

@@ -49,7 +49,7 @@ PendulumState advance(const PendulumLaw& law, const TorsionSpring& spring, Pendu
   const double stiffness = spring.stiffness + law.inertia * weight.square * weight.slope;
   const int steps = substepsFor(weight.square, stiffness / law.inertia, dt);
   const double h = dt / steps;
-  const OscillatorStep exact = oscillatorStepUnchecked(law.inertia, law.damping, stiffness, h);
+  const OscillatorStep exact = oscillatorStep(law.inertia, law.damping, stiffness, h);
   const double balance = spring.rest + (torque - law.inertia * weight.square * weight.sine) / stiffness;
   for (int i = 0; i < steps; ++i) {
     state.rate += h / 2 * weight.left(state.angle);

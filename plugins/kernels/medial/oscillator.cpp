@@ -44,14 +44,4 @@ OscillatorStep oscillatorStep(const Oscillator& o, double dt) noexcept {
   return step;
 }
 
-bool explicitEulerStable(const Oscillator& o, double h) noexcept {
-  const double c = o.damping / o.mass, w2 = o.stiffness / o.mass;
-  return w2 * h < c && 4 - 2 * c * h + w2 * h * h > 0;
-}
-
-bool symplecticEulerStable(const Oscillator& o, double h) noexcept {
-  const double c = o.damping / o.mass, w2 = o.stiffness / o.mass;
-  return w2 * h * h + 2 * c * h < 4;
-}
-
 }  // namespace hapticd::medial

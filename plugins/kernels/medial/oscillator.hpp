@@ -33,11 +33,4 @@ struct OscillatorStep {
 /// below 1e-11 of the amplitude.
 OscillatorStep oscillatorStep(const Oscillator& oscillator, double dt) noexcept;
 
-/// [any] True if explicit Euler steps of h = `dt` decay: w^2 h < c and 4 - 2 c h + w^2 h^2 > 0, with w^2 = k / m and
-/// c = b / m.
-bool explicitEulerStable(const Oscillator& oscillator, double dt) noexcept;
-
-/// [any] True if symplectic Euler steps of h = `dt` stay bounded: w^2 h^2 + 2 c h < 4, with w and c as above.
-bool symplecticEulerStable(const Oscillator& oscillator, double dt) noexcept;
-
 }  // namespace hapticd::medial

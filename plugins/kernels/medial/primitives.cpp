@@ -89,19 +89,6 @@ HullFoot Cone::foot(const Vector3d& p) const noexcept {
   return foot;
 }
 
-double Cone::axisFoot(const Vector3d& p) const noexcept {
-  if (!(length_ > 0)) return 0;
-  const Vector3d start = whole_ == 1 ? Vector3d(a_.center - length_ * axis_) : a_.center;
-  return std::fmin(1, std::fmax(0, (p - start).dot(axis_) / length_));
-}
-
-double Cone::axisDepth(const Vector3d& p) const noexcept {
-  const double z = axisFoot(p) * length_;
-  const Vector3d start = whole_ == 1 ? Vector3d(a_.center - length_ * axis_) : a_.center;
-  const double start_radius = whole_ == 1 ? a_.radius - slope_ * length_ : a_.radius;
-  return start_radius + slope_ * z - (p - start - z * axis_).norm();
-}
-
 Slab::Slab(const std::array<Sphere, 3>& spheres) : origin_(spheres[0]) {
   for (std::size_t i = 0; i < 3; ++i) edges_[i] = Cone(spheres[i], spheres[(i + 1) % 3]);
   measure(spheres);

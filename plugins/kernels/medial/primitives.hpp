@@ -41,12 +41,6 @@ class Cone {
 
   /// [any] Returns the foot of p.
   HullFoot foot(const Eigen::Vector3d& p) const noexcept;
-  /// [any] Returns the parameter (0 to 1) of the point of the axis that is nearest to p. This is the foot of the paper
-  /// (Corso et al. 2002, section 3.1).
-  double axisFoot(const Eigen::Vector3d& p) const noexcept;
-  /// [any] Returns the depth [m] by the paper's test: the radius at axisFoot() minus the distance from p to that point.
-  /// It is exact only for equal radii.
-  double axisDepth(const Eigen::Vector3d& p) const noexcept;
 
  private:
   Sphere a_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/medial/shear.hpp"
 
-#include <cmath>
-
 namespace hapticd::medial {
 
 Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& surface, const Eigen::Vector3d& normal,
@@ -22,13 +20,6 @@ Eigen::Vector3d forceAlong(const Eigen::Vector3d& slope, const Eigen::Vector3d& 
   const Eigen::Vector3d along = -per_stiffness * (slope - slope.dot(normal) * normal);
   const double length = along.norm();
   return length > most ? Eigen::Vector3d(most / length * along) : along;
-}
-
-Monotonicity monotonicity(double angle, double stiffness, double shear_stiffness) noexcept {
-  Monotonicity result;
-  result.ratio = 1 / std::cos(angle / 2);
-  result.limit = shear_stiffness > 0 ? 1 + stiffness / (4 * shear_stiffness) : HUGE_VAL;
-  return result;
 }
 
 }  // namespace hapticd::medial

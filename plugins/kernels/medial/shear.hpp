@@ -29,17 +29,4 @@ Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& 
 Eigen::Vector3d forceAlong(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double per_stiffness,
                            double most) noexcept;
 
-/// The condition under which the outward force of four shear springs on a round cap grows with the depth everywhere.
-struct Monotonicity {
-  double ratio = 1;  ///< rest length of a spring divided by its least length during a press along the normal
-  /// 1 + k / (4 keq), with the normal stiffness k and the shear stiffness keq; `ratio` must be below this
-  double limit = 1;
-  bool holds() const noexcept { return ratio < limit; }
-};
-
-/// [any] Returns the condition for neighbours at the arc angle `angle` [rad] from the contact on a cap. The springs are
-/// shortest when the contact has come down to the plane of their ends; then their rest length is 1 / cos(angle / 2)
-/// times their length.
-Monotonicity monotonicity(double angle, double stiffness, double shear_stiffness) noexcept;
-
 }  // namespace hapticd::medial

@@ -65,7 +65,7 @@ void Tracer::admitUnfinished(int track) noexcept {
 void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   const Track& t = tracks_[track];
   for (int side = 0; side < kSides; ++side) {
-    const Side& edge = model_.patch(t.patch).sides[static_cast<std::size_t>(side)];
+    const Side& edge = model_.patch(t.patch).side(side);
     if (!(t.foot.sides & bit(side))) continue;
     const bool seam = edge.kind == SideKind::kJoined && edge.patch == t.patch;
     if (edge.kind == SideKind::kPole && leavePole(track, side, p, options, false) >= 0) return;
@@ -90,7 +90,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   const double tolerance = options.tolerance;
   const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
-  const Side& edge = piece.sides[static_cast<std::size_t>(side)];
+  const Side& edge = piece.side(side);
   if (edge.kind == SideKind::kFree) return -1;
   if (edge.kind == SideKind::kPole) return leavePole(track, side, p, options, true);
   const double best = tracks_[track].foot.distance;
@@ -125,7 +125,7 @@ int Tracer::leavePole(int track, int side, const Vector3d& p, const TraceOptions
   const int patch = tracks_[track].patch;
   const double best_distance = tracks_[track].foot.distance;
   const Vector3d r = p - tracks_[track].foot.S;
-  const int own = model_.patch(patch).sides[static_cast<std::size_t>(side)].pole;
+  const int own = model_.patch(patch).side(side).pole;
   int best_fan = own, best = 0;
   double most = -kInfinity;
   for (int fan = own, n = 0; n < kMostFans; ++n) {

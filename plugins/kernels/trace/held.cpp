@@ -56,7 +56,7 @@ PathHit intersect(const Patch& patch, const Vector3d& from, const Vector3d& way,
 /// True if one of these sides is a pole.
 bool isAtPole(const Patch& patch, SideMask sides) noexcept {
   for (int at = 0; at < kSides; ++at)
-    if ((sides & bit(at)) && patch.sides[static_cast<std::size_t>(at)].kind == SideKind::kPole) return true;
+    if ((sides & bit(at)) && patch.side(at).kind == SideKind::kPole) return true;
   return false;
 }
 
@@ -108,7 +108,7 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
 
 /// Returns the outward normal of the neighbour across a joined side, at the point of the side that is nearest to uv.
 Vector3d Tracer::normalBeyond(const Patch& patch, int side, const Array2d& uv) const noexcept {
-  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  const Side& edge = patch.side(side);
   const Patch& next = model_.patch(edge.patch);
   const double fraction = patch.fractionOn(side, uv);
   return next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
@@ -119,7 +119,7 @@ bool Tracer::goesOn(const Patch& patch, SideMask sides, const Array2d& uv) const
   constexpr double kSmooth = 1 - 1e-6;  // cosine of the angle between the normals
   for (int at = 0; at < kSides; ++at) {
     if (!(sides & bit(at))) continue;
-    if (patch.sides[static_cast<std::size_t>(at)].kind != SideKind::kJoined) return false;
+    if (patch.side(at).kind != SideKind::kJoined) return false;
     if (!(patch.normalAt(uv).dot(normalBeyond(patch, at, uv)) > kSmooth)) return false;
   }
   return true;
@@ -129,7 +129,7 @@ bool Tracer::goesOn(const Patch& patch, SideMask sides, const Array2d& uv) const
 bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) const noexcept {
   const Track& t = tracks_[track];
   const Patch& patch = model_.patch(t.patch);
-  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  const Side& edge = patch.side(side);
   if (edge.kind != SideKind::kJoined) return false;
   spline::SurfacePoint E;
   patch.surface.evaluate1(t.foot.uv[0], t.foot.uv[1], E);
@@ -149,7 +149,7 @@ bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) con
 int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
   const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
-  const Side& edge = piece.sides[static_cast<std::size_t>(side)];
+  const Side& edge = piece.side(side);
   if (edge.kind == SideKind::kFree || isSpent()) return -1;
   if (edge.kind == SideKind::kPole) return leavePole(track, side, p, options, true);
   const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
@@ -247,7 +247,7 @@ Tracer::HeightOver Tracer::heightOver(int track, const Vector3d& point) noexcept
     if (nearer) below = foot;
     const int side = nearer ? sideBeyond(model_.patch(patch), foot) : -1;
     if (side < 0) return below.regular ? HeightOver{below.height, below.sides == 0} : HeightOver();
-    const Side& edge = model_.patch(patch).sides[static_cast<std::size_t>(side)];
+    const Side& edge = model_.patch(patch).side(side);
     const double fraction = model_.patch(patch).fractionOn(side, foot.uv);
     patch = edge.patch;
     uv = model_.patch(patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);

@@ -30,7 +30,7 @@ Vector3d Tracer::edgeNormal(int track) const noexcept {
   bool corner = false;
   for (int side = 0; side < kSides; ++side) {
     if (!(foot.sides & bit(side))) continue;
-    corner = corner || only >= 0 || piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kPole;
+    corner = corner || only >= 0 || piece.side(side).kind == SideKind::kPole;
     only = side;
   }
   if (corner) {
@@ -38,7 +38,7 @@ Vector3d Tracer::edgeNormal(int track) const noexcept {
     const Vector3d& n = model_.vertexNormal(piece.corners[static_cast<std::size_t>(at)]);
     if (n.squaredNorm() > 0) return n;
   }
-  const Side& edge = piece.sides[static_cast<std::size_t>(only)];
+  const Side& edge = piece.side(only);
   const Vector3d n = surfaceNormal(track);
   if (edge.kind != SideKind::kJoined) return n;
   const double fraction = piece.fractionOn(only, foot.uv);
@@ -79,7 +79,7 @@ void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept
   }
   bool open = false;
   for (int side = 0; side < kSides; ++side)
-    open = open || ((local.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree);
+    open = open || ((local.sides & bit(side)) && piece.side(side).kind == SideKind::kFree);
   foot.normal = open ? surfaceNormal(track) : edgeNormal(track);
   foot.behind = -r.dot(foot.normal);
   if (open) {

@@ -156,7 +156,7 @@ spline::TableCell cellOf(const Patch& patch, const spline::SurfacePoint& E) noex
   constexpr double kMargin = 1e-5;  // share of the range of the parameter
   spline::TableCell cell = patch.surface.cellOf(E);
   for (int side = 0; side < kSides; ++side) {
-    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    if (patch.side(side).kind != SideKind::kPole) continue;
     const int axis = Patch::axisOf(side);
     const double margin = kMargin * (patch.hi[axis] - patch.lo[axis]);
     if (side % 2 == 0) cell.lo[axis] = std::max(cell.lo[axis], patch.lo[axis] + margin);
@@ -239,7 +239,7 @@ double advance(const Patch& patch, const Vector3d& p, Step& step, int max_evalua
 void snapToPole(const Patch& patch, const Iterate& at, double enough, Step& step) noexcept {
   constexpr double kTurns = 4, kMost = 1e-5;  // a step around the pole is as long as the distance to it, or some times
   for (int side = 0; side < kSides; ++side) {
-    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    if (patch.side(side).kind != SideKind::kPole) continue;
     const int axis = Patch::axisOf(side);
     const double way = (side % 2 == 0 ? patch.lo : patch.hi)[axis] - at.uv[axis];
     const double distance = std::abs(way - step.d[axis]) * (axis == 0 ? at.E.Su : at.E.Sv).norm();
@@ -254,7 +254,7 @@ void snapToPole(const Patch& patch, const Iterate& at, double enough, Step& step
 bool turns(const Patch& patch, const spline::SurfacePoint& E, const Step& step) noexcept {
   constexpr double kMost = 0.3;  // change, relative to the tangent
   for (int side = 0; side < kSides; ++side)
-    if ((step.sides & bit(side)) && patch.sides[static_cast<std::size_t>(side)].kind == SideKind::kPole) return false;
+    if ((step.sides & bit(side)) && patch.side(side).kind == SideKind::kPole) return false;
   const Vector3d turn_u = step.d[0] * E.Suu + step.d[1] * E.Suv, turn_v = step.d[0] * E.Suv + step.d[1] * E.Svv;
   return turn_u.squaredNorm() > kMost * kMost * E.Su.squaredNorm() ||
          turn_v.squaredNorm() > kMost * kMost * E.Sv.squaredNorm();

@@ -55,6 +55,8 @@ struct Patch {
   std::array<Side, kSides> sides;
   std::array<int, kCorners> corners{};  ///< index of the model's vertex at each corner
 
+  const Side& side(int number) const noexcept { return sides[static_cast<std::size_t>(number)]; }
+  Side& side(int number) noexcept { return sides[static_cast<std::size_t>(number)]; }
   /// [any] Returns the parameter that is constant on a side: 0 (u) or 1 (v).
   static constexpr int axisOf(int side) { return side / 2; }
   /// [any] Returns (u, v) of the point at `fraction` (0 to 1) along a side.
@@ -78,8 +80,8 @@ struct Patch {
   /// [any] True if the surface continues beyond one of these sides. Then a foot point there may not be a local minimum
   /// of the distance.
   bool continuesBeyond(SideMask mask) const noexcept {
-    for (int side = 0; side < kSides; ++side)
-      if ((mask & bit(side)) && sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return true;
+    for (int i = 0; i < kSides; ++i)
+      if ((mask & bit(i)) && side(i).kind != SideKind::kFree) return true;
     return false;
   }
   /// [any] Returns the sides on which the point (u, v) lies.

@@ -106,7 +106,7 @@ class Search {
       const int axis = Patch::axisOf(side);
       const double gap = side % 2 == 0 ? leaf.middle[axis] - leaf.half[axis] - piece.lo[axis]
                                        : piece.hi[axis] - leaf.middle[axis] - leaf.half[axis];
-      if (gap <= slack[axis] && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree) return true;
+      if (gap <= slack[axis] && piece.side(side).kind == SideKind::kFree) return true;
     }
     return false;
   }

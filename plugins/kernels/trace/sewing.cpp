@@ -100,9 +100,9 @@ void Sewing::findPoles() {
       for (int i = 1; i < kPoints; ++i)
         extent = std::max(extent, (pointOnSide(patch, side, i / (kPoints - 1.0)) - apex).norm());
       if (extent > tolerance_) continue;
-      patch.sides[static_cast<std::size_t>(side)].kind = SideKind::kPole;
+      patch.side(side).kind = SideKind::kPole;
       const int pole = static_cast<int>(model_.poles_.size());
-      patch.sides[static_cast<std::size_t>(side)].pole = pole;
+      patch.side(side).pole = pole;
       model_.poles_.push_back(fanOf(patch, side));
       PoleFan& fan = model_.poles_.back();
       fan.patch = index;
@@ -119,7 +119,7 @@ void Sewing::collectCurves() {
   for (int index = 0; index < model_.patchCount(); ++index) {
     const Patch& patch = model_.patch(index);
     for (int side = 0; side < kSides; ++side) {
-      if (patch.sides[static_cast<std::size_t>(side)].kind == SideKind::kPole) continue;
+      if (patch.side(side).kind == SideKind::kPole) continue;
       SideCurve curve{index, side, {}};
       for (int i = 0; i < kSamples; ++i)
         curve.points[static_cast<std::size_t>(i)] = pointOnSide(patch, side, i / (kSamples - 1.0));
@@ -198,7 +198,7 @@ bool Sewing::runsAlong(const SideCurve& a, const SideCurve& b, bool flipped) con
 
 void Sewing::join(SideCurve& a, SideCurve& b, bool flipped) {
   const auto link = [this, flipped](const SideCurve& from, const SideCurve& to) {
-    Side& side = model_.patches_[static_cast<std::size_t>(from.patch)].sides[static_cast<std::size_t>(from.side)];
+    Side& side = model_.patches_[static_cast<std::size_t>(from.patch)].side(from.side);
     side.kind = SideKind::kJoined;
     side.patch = to.patch;
     side.side = to.side;
@@ -242,7 +242,7 @@ void Sewing::reportDisagreement() {
   for (int i = 0; i < model_.patchCount(); ++i)
     for (int s = 0; s < kSides && model_.warnings_.size() < kMaxWarnings; ++s) {
       const Patch& patch = model_.patch(i);
-      const Side& side = patch.sides[static_cast<std::size_t>(s)];
+      const Side& side = patch.side(s);
       if (side.kind != SideKind::kJoined || std::pair(side.patch, side.side) < std::pair(i, s)) continue;
       const Patch& other = model_.patch(side.patch);
       const double one = patch.sign * kCounterClockwise[static_cast<std::size_t>(s)];
@@ -284,12 +284,12 @@ void Sewing::findVertexNormals() {
   };
   for (const Patch& patch : model_.patches_) {
     for (int corner = 0; corner < kCorners; ++corner) {
-      const auto kindOf = [&patch](int side) { return patch.sides[static_cast<std::size_t>(side)].kind; };
+      const auto kindOf = [&patch](int side) { return patch.side(side).kind; };
       if (kindOf(corner % 2) != SideKind::kPole && kindOf(2 + corner / 2) != SideKind::kPole)
         normalOf(patch, corner) += cornerAngle(patch, corner) * patch.normalAt(cornerUv(patch, corner));
     }
     for (int side = 0; side < kSides; ++side)
-      if (const int pole = patch.sides[static_cast<std::size_t>(side)].pole; pole >= 0)
+      if (const int pole = patch.side(side).pole; pole >= 0)
         normalOf(patch, Patch::endsOf(side)[0]) += fanNormal(patch, side, model_.pole(pole));
   }
   for (Vector3d& normal : model_.vertex_normal_) {

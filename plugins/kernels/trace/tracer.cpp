@@ -25,7 +25,7 @@ bool isNearPole(const Patch& patch, const Array2d& uv) noexcept {
   constexpr double kNear = 0.1;  // share of the range of the parameter
   const Array2d range = patch.hi - patch.lo, low = (uv - patch.lo) / range, high = (patch.hi - uv) / range;
   for (int side = 0; side < kSides; ++side) {
-    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    if (patch.side(side).kind != SideKind::kPole) continue;
     if ((side % 2 == 0 ? low : high)[Patch::axisOf(side)] < kNear) return true;
   }
   return false;

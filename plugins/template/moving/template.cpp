@@ -53,10 +53,10 @@ struct TemplatePlate : hapticd::Shape {
     move(step.dt_s);
     place(*step.pose);
     push_ = give_ = 0;
-    for (uint32_t i = 0; i < step.count; ++i)
-      touch(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), way_ - before,
-            *HSP_AT(hsp_contact, step.out, step.out_stride, i));
-    return HSP_OK;
+    return hapticd::touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+      touch(probe, way_ - before, contact);
+      return HSP_OK;
+    });
   }
 
   /// Returns triangles for `run --view` and other drawings. Forces do not need them.

@@ -40,10 +40,10 @@ struct MovingBall : hapticd::Shape {
     const double turn = 2 * M_PI * rate * time_, before = way_;
     way_ = amplitude * std::sin(turn);
     place(*step.pose, 2 * M_PI * rate * amplitude * std::cos(turn));
-    for (uint32_t i = 0; i < step.count; ++i)
-      touch(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), way_ - before,
-            *HSP_AT(hsp_contact, step.out, step.out_stride, i));
-    return HSP_OK;
+    return hapticd::touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
+      touch(probe, way_ - before, contact);
+      return HSP_OK;
+    });
   }
 
  private:

@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "base/regular_file.hpp"
+#include "bounds.hpp"
 #include "record/plot.hpp"
-#include "servo/safety/passivity/bounds.hpp"
 #include "wall_loop.hpp"
 
 namespace {
@@ -20,7 +20,6 @@ namespace {
 using namespace hapticd::zwidth;
 using hapticd::record::Curve;
 using hapticd::record::Picture;
-namespace passivity = hapticd::passivity;
 
 constexpr double kInNewtonPerMm = 1e-3;
 const std::string& colour(size_t i) {
@@ -63,7 +62,7 @@ void againstRate(Picture& picture, Page& page) {
     Wall wall;
     wall.period = 1 / rate;
     const Body device;
-    const double bound = passivity::maxStiffness(device.damping, 0, 1, 0, wall.period);
+    const double bound = maxStiffness(wall, device);
     const double found = stableStiffnessWorstHand(wall, device);
     const double lonely = stableStiffness(wall, device);
     double best = 0;
@@ -99,7 +98,7 @@ void againstDamping(Picture& picture, Page& page) {
     for (size_t i = 0; i < windows.size(); ++i) {
       Wall wall;
       wall.damping = B, wall.window = windows[i];
-      const double bound = passivity::maxStiffness(device.damping, B, wall.window, 0, wall.period);
+      const double bound = maxStiffness(wall, device);
       // skipped, because a state of fifty samples takes long
       const bool slow = wall.window > 15 && std::fmod(B, 1) != 0;
       const double found = bound > 0 && !slow ? stableStiffnessWorstHand(wall, device) : std::nan("");
@@ -123,7 +122,7 @@ void againstDelay(Picture& picture, Page& page) {
       Wall wall;
       wall.period = i == 0 ? 1e-3 : 2e-4, wall.delay = delay;
       const Body device;
-      const double bound = passivity::maxStiffness(device.damping, 0, 1, delay, wall.period);
+      const double bound = maxStiffness(wall, device);
       const double found = stableStiffnessWorstHand(wall, device);
       pairs[i].add(delay, bound, found);
       line += fmt::format(" {:.4f} | {:.4f} |", bound * 1e-3, found * 1e-3);
@@ -152,7 +151,7 @@ void againstResolution(Picture& picture, Page& page) {
       wall.resolution = step;
       Body device;
       device.damping = devices[i][0], device.friction = devices[i][1];
-      const double bound = passivity::maxStiffnessQuantised(device.damping, device.friction, step, wall.period);
+      const double bound = maxStiffnessQuantised(wall, device);
       const double found = passiveStiffness(wall, device);
       pairs[i].add(step * 1e6, bound, found);
       line += fmt::format(" {:.3f} | {:.3f} |", bound * 1e-3, found * 1e-3);
@@ -245,7 +244,7 @@ int draw(bool write) {
          "and Schenkel 1997, with\n"
          "  the window of Eq. 5 of Thompson et al. put in); with delay or both, the numeric maximum over frequency. "
          "Below it no passive\n"
-         "  hand makes the wall oscillate. The functions are in `driver/daemon/servo/safety/passivity/bounds.hpp`.\n"
+         "  hand makes the wall oscillate. The functions are in `tests/bench/zwidth/bounds.hpp`.\n"
          "- **Found, worst hand**: the smallest stiffness at which some hand of mass and spring, without friction, "
          "makes the loop grow: the\n"
          "  eigenvalues of the exact sampled loop. The bound is as tight as these hands come near it.\n"

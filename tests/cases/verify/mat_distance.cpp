@@ -15,8 +15,6 @@ void matDistance(const Case& c, Check& check) {
     const medial::HullFoot foot = cone.foot(q);
     check.near("signed_distance", foot.distance, c.expect["signed_distance"], tolerance);
     if (c.expect.contains("t")) check.near("t", foot.parameter[0], c.expect["t"], tolerance * 1e2);
-    if (c.expect.contains("paper_depth"))
-      check.near("paper_depth", cone.axisDepth(q), c.expect["paper_depth"], tolerance);
   } else if (primitive == "slab") {
     const medial::Slab slab({medial::Sphere{vector(in["c"][0]), number(in["r"][0])},
                              medial::Sphere{vector(in["c"][1]), number(in["r"][1])},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "servo/safety/passivity/bounds.hpp"
+#include "bounds.hpp"
 #include "verify.hpp"
 
 namespace hapticd::verify {
@@ -8,13 +8,17 @@ namespace {
 void passivityBounds(const Case& c, Check& check) {
   const Json& in = c.input;
   if (c.expect.contains("c_n")) {
-    const auto window = passivity::windowCoefficient(in["n"].get<int>());
+    const auto window = zwidth::windowCoefficient(in["n"].get<int>());
     check.near("c_n", window.value, c.expect["c_n"], number(c.tol["abs"]));
     check.near("theta", window.theta, c.expect["theta"], number(c.tol["theta_abs"]));
     return;
   }
-  const double stiffness = passivity::maxStiffness(number(in["b"]), number(in["B"]), in["n"].get<int>(),
-                                                   in["delay"].get<int>(), number(in["T"]));
+  zwidth::Wall wall;
+  wall.damping = number(in["B"]), wall.period = number(in["T"]);
+  wall.window = in["n"].get<int>(), wall.delay = in["delay"].get<int>();
+  zwidth::Body device;
+  device.damping = number(in["b"]);
+  const double stiffness = zwidth::maxStiffness(wall, device);
   check.relative("K_max", stiffness, c.expect["K_max"], number(c.tol["rel"]));
 }
 

@@ -23,6 +23,8 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HD
 /// [kg] mass of a light arm, used if the arm's mass is unknown: the passivity controller then adds only little damping
 constexpr double kAssumedMass = 0.05;
 
+constexpr hdv_command kMotorsOff = {sizeof(hdv_command), HDV_OFF, {}, {}};
+
 /// True if this arm may use its full force at any rate: a simulated arm hurts nobody, and a replay must repeat the
 /// forces that were felt.
 bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
@@ -145,7 +147,7 @@ void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;
   hdv_sample sample{};
   (void)device_->read(now, sample);  // the first tick finds the same error, if there is one
-  (void)device_->write(now, {sizeof(hdv_command), HDV_OFF, {}, {}});
+  (void)device_->write(now, kMotorsOff);
   fresh_at_ = now;
   taken_.store(false);
 }
@@ -185,9 +187,8 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
   std::array<double, 4 * HDV_MAX_LINKS> orientations;
   if (links->frames(device_->handle(), sample_.position, positions.data(), orientations.data()) != HSP_OK) return 0;
   for (uint32_t i = 0; i < links->link_count; ++i) {
-    const double* q = &orientations[4 * i];
     const Eigen::Vector3d p = R_world_device_ * Eigen::Map<const Eigen::Vector3d>(&positions[3 * i]) + origin_world_;
-    const Eigen::Quaterniond turn = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    const Eigen::Quaterniond turn = q_world_device_ * quaternionOf(&orientations[4 * i]);
     ends[i] = {{p.x(), p.y(), p.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
   }
   return links->link_count;
@@ -197,9 +198,8 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
 void Arm::takeVirtualProbe() noexcept HSP_RT {
   if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // now driven by force, which can be faded
   if (!admittance_->started() && !admittance_->start(sample_.position)) return;
-  const Eigen::Vector4d& q = admittance_->orientation();
   probe_.position = R_world_device_ * admittance_->position() + origin_world_;
-  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  probe_.orientation = q_world_device_ * quaternionOf(admittance_->orientation().data());
   probe_.velocity = R_world_device_ * admittance_->velocity();
 }
 
@@ -233,21 +233,18 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   const uint32_t joints = device_->info().joint_count;
   const hdv_ext_kinematics& kinematics = device_->kinematics();
   Jacobian J(6, joints);
-  hdv_command& command = command_;
-  command = hdv_command{};
-  command.struct_size = sizeof command;
-  command.mode = HDV_OFF;
+  command_ = kMotorsOff;
   const bool located = std::isfinite(sample_.position[0]) &&
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
   if (!located) sendsNothing();
   const Weight::Torques weight = located ? weightTorques(J.topRows<3>(), dt) : Weight::Torques{};
   if (located && !limiter_.silent() && !comply(dt, force, weight)) {
-    command.mode = HDV_TORQUE;
-    Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
+    command_.mode = HDV_TORQUE;
+    Eigen::Map<Eigen::VectorXd> tau(command_.torque, joints);
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
     tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
     if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
-    scaleToMotors(weight, command);
+    scaleToMotors(weight);
   }
   if (!heat_.empty()) heatMotors(dt);
   const bool wrote = write_status_ >= 0;
@@ -274,7 +271,7 @@ void Arm::send(Nanoseconds now) noexcept HSP_RT {
   cut_in_write_ = false;
   if (cut_.load()) {  // the motors are off until this tick has acknowledged the cut
     findCut(CutFound::kInWrite);
-    command_ = {sizeof command_, HDV_OFF, {}, {}};
+    command_ = kMotorsOff;
   }
   write_status_ = device_->write(now, command_);
   taken_.store(false);
@@ -296,10 +293,7 @@ void Arm::cut(double after) noexcept {
   // A module without hdv.cut/1 may be called by one thread at a time: if the servo is inside the module now, only the
   // hardware's own watchdog can help.
   if (taken_.exchange(true)) return;
-  hdv_command off{};
-  off.struct_size = sizeof off;
-  off.mode = HDV_OFF;
-  device_->write(monotonicNow(), off);
+  device_->write(monotonicNow(), kMotorsOff);
   taken_.store(false);
 }
 
@@ -332,12 +326,12 @@ Weight::Torques Arm::weightTorques(const TipJacobian& J, double dt) noexcept HSP
   return gravity;
 }
 
-void Arm::scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT {
+void Arm::scaleToMotors(const Weight::Torques& gravity) noexcept HSP_RT {
   // Scales all joints by one factor, so that the force on the hand keeps its direction when a motor is at its limit.
   // The torques that carry the arm's weight are not scaled, or the arm would fall on the hand.
   double factor = 1;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
-    const double most = device_->info().max_torque[i], asked = command.torque[i];
+    const double most = device_->info().max_torque[i], asked = command_.torque[i];
     if (most <= 0 || asked == 0) continue;
     const double held = std::clamp(gravity[i], -most, most);
     const double room = asked > 0 ? most - held : most + held;
@@ -345,9 +339,13 @@ void Arm::scaleToMotors(const Weight::Torques& gravity, hdv_command& command) no
   }
   if (factor < 1) limiter_.clippedByMotors();
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
-    const double most = device_->info().max_torque[i], sum = gravity[i] + factor * command.torque[i];
-    command.torque[i] = most > 0 ? std::clamp(sum, -most, most) : sum;
+    const double most = device_->info().max_torque[i], sum = gravity[i] + factor * command_.torque[i];
+    command_.torque[i] = most > 0 ? std::clamp(sum, -most, most) : sum;
   }
+}
+
+bool onlySimulated(const Arms& arms) noexcept HSP_RT {
+  return std::all_of(arms.begin(), arms.end(), [](const auto& arm) { return arm->simulated(); });
 }
 
 }  // namespace hapticd::servo

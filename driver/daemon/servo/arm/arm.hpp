@@ -151,7 +151,7 @@ class Arm {
   /// Returns the torques that carry the arm's own weight in this tick: zeros if the module does not know them, or if
   /// its answer is not finite.
   Weight::Torques weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT;
-  void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
+  void scaleToMotors(const Weight::Torques& gravity) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
   void send(Nanoseconds now) noexcept HSP_RT;
   void sendsNothing() noexcept HSP_RT;
@@ -201,5 +201,8 @@ class Arm {
 
 /// The arms of a run, in the order of the scene.
 using Arms = std::vector<std::unique_ptr<Arm>>;
+
+/// [any] True if no arm is real, so that no hand can be hurt.
+bool onlySimulated(const Arms& arms) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

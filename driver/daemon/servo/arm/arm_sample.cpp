@@ -127,7 +127,7 @@ bool Arm::locate() noexcept HSP_RT {
     return false;
   }
   probe_.position = R_world_device_ * p_device + origin_world_;
-  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  probe_.orientation = q_world_device_ * quaternionOf(q.data());
   return true;
 }
 

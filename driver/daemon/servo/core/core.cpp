@@ -49,9 +49,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   ModelState model;
   model.shape = &shape;
   Map(model.pose.position) = described.pose.position;
-  const Eigen::Quaterniond& q = described.pose.orientation;
-  model.pose.orientation[0] = q.w(), model.pose.orientation[1] = q.x();
-  model.pose.orientation[2] = q.y(), model.pose.orientation[3] = q.z();
+  storeQuaternion(described.pose.orientation, model.pose.orientation);
   model.frame = Frame::of(model.pose);
   const bool moves_itself = (shape.report().flags & HSP_R_MOVES) != 0;
   model.kinematic = described.kinematic;
@@ -209,10 +207,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
     Map(in.velocity) = model.frame.vectorToModel(probe.velocity - surface);
   }
   if ((needs & HSP_R_ORIENTATION) != 0) {
-    const double* q = model.pose.orientation;
-    const Eigen::Quaterniond relative = Eigen::Quaterniond(q[0], -q[1], -q[2], -q[3]) * probe.orientation;
-    in.orientation[0] = relative.w(), in.orientation[1] = relative.x();
-    in.orientation[2] = relative.y(), in.orientation[3] = relative.z();
+    storeQuaternion(quaternionOf(model.pose.orientation).conjugate() * probe.orientation, in.orientation);
   }
 }
 
@@ -241,7 +236,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     } else {
       fadeContact(index, i, fade);
     }
-    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
+    Contact& contact = contacts_[at(index, i)];
     if (!probes[i].valid) {
       contact = Contact{};
       continue;

@@ -143,9 +143,7 @@ class Core {
   /// Energy that moving models gave to a probe since the last tick, and energy that its contacts can still give back.
   const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
   std::span<const ModelState> models() const noexcept { return models_; }
-  const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
-    return contacts_[size_t{model} * probe_count_ + probe];
-  }
+  const Contact& contact(uint32_t model, uint32_t probe) const noexcept { return contacts_[at(model, probe)]; }
   /// True if the last tick had a jump or a lost track, so that a proximity search should run at once.
   bool needsSearch() const noexcept { return needs_search_; }
   /// Number of transforms in the last tick: one per model and probe, and two per traced foot point (the point and its
@@ -160,6 +158,8 @@ class Core {
   uint32_t present() const noexcept { return present_; }
 
  private:
+  /// Returns the place of a model and a probe in contacts_ and claims_.
+  size_t at(uint32_t model, uint32_t probe) const noexcept { return size_t{model} * probe_count_ + probe; }
   bool adopt(ModelState& place, const Order& order) noexcept HSP_RT;
   bool enable(ModelState& model, uint32_t param) noexcept HSP_RT;
   static bool isTraced(const ModelState& model) noexcept HSP_RT;
@@ -208,12 +208,12 @@ class Core {
   std::vector<uint32_t> live_;  // see live(). It is in scene order, so that forces are always added in the same order
   std::vector<Load> loads_;     // costs of the models that were stepped
   LoadShedding shedding_;
-  std::vector<Claim> claims_;  // [model * probe_count + probe]
+  std::vector<Claim> claims_;  // see at()
   // The answer that is being judged. It is a member, because constructing it for each answer would take as long as
   // judging it.
   ClaimStep claim_step_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // rotation in this tick of the model that is being judged
-  std::vector<Contact> contacts_;                       // [model * probe_count + probe]
+  std::vector<Contact> contacts_;                       // see at()
   std::vector<hsp_probe> inputs_;                       // probes for the model being stepped
   std::vector<hsp_contact> outputs_;
   // The number of records per tick is bounded, so that many records at once do not make a tick late. The rest waits for

@@ -95,7 +95,7 @@ Vector3d carried(const ModelState& model, const Vector3d& from) noexcept HSP_RT 
     step.p_model = model.frame.pointToModel(step.p_world);
     step.origin = model.frame.origin_world;
   }
-  Claim& claim = claims_[size_t{index} * probe_count_ + probe];
+  Claim& claim = claims_[at(index, probe)];
   const bool twists = uses_.torque && !settings_.former_claims && holdTorque(model, claim, probe, dt);
   bool held = false;
   const Vector3d let = claim.check(step, model.claims, dt, held);
@@ -141,7 +141,7 @@ ShapeFault Core::checkAnswer(ModelState& model, uint32_t index, double dt, const
   if (fault == ShapeFault::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   if (fault == ShapeFault::kLost) {
     model.shape->reset();
-    for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{index} * probe_count_ + i].forget();
+    for (uint32_t i = 0; i < probe_count_; ++i) claims_[at(index, i)].forget();
     needs_search_ = true;
   }
   return fault;
@@ -149,7 +149,7 @@ ShapeFault Core::checkAnswer(ModelState& model, uint32_t index, double dt, const
 
 /// Replaces the answer by a part of the last good force, to fade out a faulty model.
 void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
-  Contact& last = contacts_[size_t{index} * probe_count_ + probe];
+  Contact& last = contacts_[at(index, probe)];
   last.traced = false;
   Map(last.world.force) *= part;
   Map(last.world.torque) *= part;
@@ -167,13 +167,13 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
 
 /// Returns the place of a model on which its force of the last tick acts.
 Vector3d Core::touchedPlace(uint32_t index, uint32_t probe) const noexcept HSP_RT {
-  const Contact& held = contacts_[size_t{index} * probe_count_ + probe];
+  const Contact& held = contact(index, probe);
   return held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[probe];
 }
 
 /// Returns the direction in which the last force of a model pushes the probe: that of the surface, without friction.
 Vector3d Core::pushDirection(uint32_t index, uint32_t probe) const noexcept HSP_RT {
-  const Contact& held = contacts_[size_t{index} * probe_count_ + probe];
+  const Contact& held = contact(index, probe);
   const ConstMap force(held.world.force), normal(held.world.normal);
   if (!held.traced) return force.normalized();
   return force.dot(normal) < 0 ? -normal : Vector3d(normal);
@@ -185,7 +185,7 @@ Vector3d Core::pushDirection(uint32_t index, uint32_t probe) const noexcept HSP_
 bool Core::runsAway(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
   if (!(dt > 0)) return false;
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    if (ConstMap(contacts_[size_t{index} * probe_count_ + i].world.force).isZero(0)) continue;
+    if (ConstMap(contact(index, i).world.force).isZero(0)) continue;
     const Vector3d from = touchedPlace(index, i);
     if ((carried(model, from) - from).dot(pushDirection(index, i)) > settings_.max_probe_speed * dt) return true;
   }
@@ -196,7 +196,7 @@ bool Core::runsAway(const ModelState& model, uint32_t index, double dt) const no
 /// then.
 void Core::recordMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    const ConstMap force(contacts_[size_t{index} * probe_count_ + i].world.force);
+    const ConstMap force(contact(index, i).world.force);
     if (force.isZero(0)) continue;
     const Vector3d from = touchedPlace(index, i);
     exchanges_[i].supplied += force.dot(carried(model, from) - from);
@@ -231,7 +231,7 @@ ShapeFault Core::takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT {
 
 void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT {
   const hsp_contact& out = outputs_[probe];
-  Contact& contact = contacts_[size_t{index} * probe_count_ + probe];
+  Contact& contact = contacts_[at(index, probe)];
   contact.world = out;
   contact.traced = (out.flags & HSP_OUT_TRACED) != 0;
   if (model.level > 0 && std::isfinite(out.residual_m))
@@ -274,8 +274,8 @@ bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace
 
 void Core::clearContacts(uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    contacts_[size_t{index} * probe_count_ + i] = Contact{};
-    claims_[size_t{index} * probe_count_ + i].forget();
+    contacts_[at(index, i)] = Contact{};
+    claims_[at(index, i)].forget();
   }
 }
 

@@ -80,7 +80,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
     claims.stiffness = std::max(claims.stiffness, order.value);
   // A new value may change the force on a resting probe. Such a jump is not the plugin's fault.
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    Claim& claim = claims_[size_t{order.target} * probe_count_ + i];
+    Claim& claim = claims_[at(order.target, i)];
     if (settings_.former_claims)
       claim.forget();
     else

@@ -11,6 +11,15 @@ namespace hapticd::servo {
 
 using Eigen::Vector3d;
 
+/// Writes a quaternion in the order of the ABI: w, x, y, z.
+inline void storeQuaternion(const Eigen::Quaterniond& q, double* wxyz) noexcept {
+  wxyz[0] = q.w(), wxyz[1] = q.x(), wxyz[2] = q.y(), wxyz[3] = q.z();
+}
+/// Reads a quaternion in the order of the ABI.
+inline Eigen::Quaterniond quaternionOf(const double* wxyz) noexcept {
+  return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
+}
+
 /// Pose of a model in the world, with a rotation matrix, for use within a tick. Elsewhere poses have quaternions.
 struct Frame {
   Eigen::Matrix3d R_world_model = Eigen::Matrix3d::Identity();
@@ -19,7 +28,7 @@ struct Frame {
 
   static Frame of(const hsp_pose& pose) noexcept {
     Frame frame;
-    const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);
+    const Eigen::Quaterniond q = quaternionOf(pose.orientation);
     frame.R_world_model = q.toRotationMatrix();
     frame.origin_world = Vector3d(pose.position);
     frame.identity = frame.origin_world.isZero(0) && q.vec().isZero(0);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "servo/core/path.hpp"
 
+#include "servo/core/frame.hpp"
+
 namespace hapticd::servo {
 
 namespace {
 
 void store(const Eigen::Vector3d& p, const Eigen::Quaterniond& q, hsp_pose& pose) noexcept {
   Eigen::Map<Eigen::Vector3d>(pose.position) = p;
-  pose.orientation[0] = q.w(), pose.orientation[1] = q.x(), pose.orientation[2] = q.y(), pose.orientation[3] = q.z();
+  storeQuaternion(q, pose.orientation);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servo/core/frame.hpp"
+
 namespace hapticd::servo {
 
 namespace {
@@ -26,10 +28,6 @@ Vector3d capped(Vector3d v, double most) noexcept HSP_RT {
   if (largest > most) v *= most / largest;
   const double norm = v.norm();
   return norm > most ? Vector3d(v * (most / norm)) : v;
-}
-
-Quaterniond quaternion(const double* q) noexcept HSP_RT {
-  return Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 
 /// Returns the rotation vector of a quaternion, for the shorter way round.
@@ -107,7 +105,7 @@ void PoseFollower::begin(const hsp_pose& pose) noexcept HSP_RT {
   p_ = Vector3d(pose.position);
   v_ = Vector3d(pose.linear);
   w_ = Vector3d(pose.angular);
-  q_ = quaternion(pose.orientation);
+  q_ = quaternionOf(pose.orientation).normalized();
   led_ = rests_ = false;
 }
 
@@ -116,7 +114,7 @@ bool PoseFollower::aim(const hapticd_target& target, double t) noexcept HSP_RT {
   p_target_ = Vector3d(target.position);
   v_target_ = capped(Vector3d(target.linear), kMostSpeed);
   w_target_ = capped(Vector3d(target.angular), kMostTurn);
-  q_target_ = quaternion(target.orientation);
+  q_target_ = quaternionOf(target.orientation).normalized();
   t_target_ = t;
   led_ = true;
   rests_ = false;
@@ -133,8 +131,7 @@ void PoseFollower::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
   Eigen::Map<Vector3d>(pose.position) = p_;
   Eigen::Map<Vector3d>(pose.linear) = v_;
   Eigen::Map<Vector3d>(pose.angular) = w_;
-  pose.orientation[0] = q_.w(), pose.orientation[1] = q_.x();
-  pose.orientation[2] = q_.y(), pose.orientation[3] = q_.z();
+  storeQuaternion(q_, pose.orientation);
   const bool still = v_.isZero(0) && w_.isZero(0);
   const bool target_still = trust == 0 || (v_target_.isZero(0) && w_target_.isZero(0));
   rests_ = dt > 0 && still && (!led_ || target_still);

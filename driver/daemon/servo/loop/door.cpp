@@ -30,8 +30,7 @@ hapticd_state stateOf(const TickTime& tick, const Arm& arm) noexcept HSP_RT {
   state.t = tick.t, state.dt = tick.dt;
   std::copy_n(probe.position.data(), 3, state.position);
   std::copy_n(probe.velocity.data(), 3, state.velocity);
-  state.orientation[0] = probe.orientation.w(), state.orientation[1] = probe.orientation.x();
-  state.orientation[2] = probe.orientation.y(), state.orientation[3] = probe.orientation.z();
+  storeQuaternion(probe.orientation, state.orientation);
   std::copy_n(arm.sample().position, std::min<size_t>(std::size(state.joints), HDV_MAX_JOINTS), state.joints);
   std::copy_n(arm.force().data(), 3, state.sent);
   state.flags = probe.valid ? uint32_t{HAPTICD_GOOD} : 0u;

@@ -103,7 +103,7 @@ void Loop::run() noexcept {
     tick_begun_.store(begun, std::memory_order_relaxed);
     search_time_ = listen_time_ = 0;
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
-    if (dt > kLateFault && !simulated()) trip(Fault::kLate, dt);
+    if (dt > kLateFault && !onlySimulated(arms_)) trip(Fault::kLate, dt);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     log_.begin(deadline, arms_);
     tick({n, deadline, t, dt});
@@ -159,10 +159,6 @@ void Loop::rampOut() noexcept HSP_RT {
 
 bool Loop::allSilent() const noexcept HSP_RT {
   return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->limiter().silent(); });
-}
-
-bool Loop::simulated() const noexcept HSP_RT {
-  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
 }
 
 void Loop::applyOrders(double t) noexcept HSP_RT {

@@ -107,7 +107,6 @@ class Loop {
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
   void rampOut() noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
-  bool simulated() const noexcept HSP_RT;
   Nanoseconds longestRest() const noexcept HSP_RT;
   Nanoseconds timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
   Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;

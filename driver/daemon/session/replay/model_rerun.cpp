@@ -81,7 +81,7 @@ void ModelRerun::step() {
     std::memcpy(probe.position.data(), row + tip.position->offset, 3 * sizeof(double));
     std::memcpy(probe.velocity.data(), row + tip.velocity->offset, 3 * sizeof(double));
     std::memcpy(orientation, row + tip.orientation->offset, sizeof orientation);
-    probe.orientation = Eigen::Quaterniond(orientation[0], orientation[1], orientation[2], orientation[3]);
+    probe.orientation = quaternionOf(orientation);
     probe.valid = ticks_->number(next_, *tip.valid) == 1 && probe.position.allFinite() && probe.velocity.allFinite() &&
                   probe.orientation.coeffs().allFinite();
   }

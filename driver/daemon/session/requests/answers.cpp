@@ -19,12 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kClientModes[] = {"off", "add", "instead"};  ///< in the order of scene::ClientMode
 
-const scene::Value* given(const scene::Model& model, uint32_t index) {
-  const auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [&](const scene::Value& value) { return value.index == index; });
-  return found != model.parameters.end() ? &*found : nullptr;
-}
-
 /// Returns the default of a parameter. For an array, the plugin's table has it as JSON text such as "[0, 1, 0]", or
 /// empty.
 Json defaultOf(const hsp_param& param) {
@@ -33,18 +27,19 @@ Json defaultOf(const hsp_param& param) {
 }
 
 /// Returns a parameter's value in JSON: the word of a choice, true or false for a switch.
-Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index) {
-  const scene::Value* value = given(model, index);
+Json valueJson(const scene::Model& model, const hsp_param& param) {
+  const scene::Value* value = scene::givenIn(model.parameters, param.id);
+  const double number = value != nullptr ? value->number : param.def;
   switch (param.kind) {
     case HSP_BOOL:
-      return valueOf(model, param, index) != 0;
+      return number != 0;
     case HSP_ENUM: {
-      const auto choice = static_cast<uint32_t>(valueOf(model, param, index));
+      const auto choice = static_cast<uint32_t>(number);
       return choice < param.choice_count ? Json(host::textOf(param.choices[choice])) : Json(choice);
     }
     case HSP_REAL:
     case HSP_INT:
-      return valueOf(model, param, index);
+      return number;
     case HSP_ARRAY:
       return value != nullptr ? Json(value->numbers) : defaultOf(param);
     default:
@@ -63,7 +58,7 @@ Json liveParameters(const Session& session, uint32_t place) {
                     {"min", param.min},
                     {"max", param.max},
                     {"safety", (param.flags & HSP_P_SAFETY) != 0},
-                    {"value", valueOf(session.places[place].model, param, i)},
+                    {"value", scene::numberIn(session.places[place].model.parameters, param.id, param.def)},
                     {"whole", param.kind != HSP_REAL},
                     {"doc", host::textOf(param.doc)}});
     if (param.kind == HSP_ENUM)
@@ -167,11 +162,6 @@ record::ClientReport reportOf(const ClientForces::Client& client, const Leads::P
   report.refused = read(client.refused);
   report.why = describe(read(client.why));
   return report;
-}
-
-double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index) {
-  const scene::Value* value = given(model, index);
-  return value != nullptr ? value->number : param.def;
 }
 
 bool waitsForTip(const Session& session, uint32_t place) {
@@ -279,8 +269,8 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
     const hsp_param& param = host::paramAt(plugin, i);
     if (parameter == param.id)
-      return lineOf({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", host::textOf(param.unit)}});
-    values[param.id] = valueJson(model, param, i);
+      return lineOf({{"ok", true}, {"value", valueJson(model, param)}, {"unit", host::textOf(param.unit)}});
+    values[param.id] = valueJson(model, param);
   }
   if (parameter.empty()) return lineOf({{"ok", true}, {"values", values}});
   return Error{noSuchParameter(plugin, parameter, 0)};

@@ -67,7 +67,4 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
 /// [main] Returns an event as a JSON object, without a line end.
 std::string eventText(const Session& session, const hapticd_event& event);
 
-/// [main] Returns the value of a numeric parameter: the value that the scene gives, or else the default.
-double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index);
-
 }  // namespace hapticd::servo

@@ -98,29 +98,27 @@ Result<std::string> RequestHandler::answerQuery(const control::Peer& peer, const
       return eventsAfter(request.after);
     case Request::Kind::kSubscribe:
       return subscribe(peer);
+    default:
+      return answerModelQuery(request);
+  }
+}
+
+Result<std::string> RequestHandler::answerModelQuery(const Request& request) {
+  const auto place = placeOf(request.model);
+  if (!place) return Error{place.error()};
+  const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
+  const DrawingWish wish{request.tolerance, request.triangles};
+  switch (request.kind) {
     case Request::Kind::kGet: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
       auto values = valuesAnswer(session(), *place, request.parameter);
       return values ? values : refuse("unknown", values.error());
     }
-    case Request::Kind::kGeometry: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
-      const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
-      const DrawingWish wish{request.tolerance, request.triangles};
+    case Request::Kind::kGeometry:
       return request.as_memory ? geometryInMemory(shape, wish, attached_) : geometryAnswer(shape, wish);
-    }
-    case Request::Kind::kVertices: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
-      return verticesAnswer(*runner_.world().shapes()[*place], request.after);
-    }
-    case Request::Kind::kFeature: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
-      return featureAnswer(*runner_.world().shapes()[*place], request.number);
-    }
+    case Request::Kind::kVertices:
+      return verticesAnswer(shape, request.after);
+    case Request::Kind::kFeature:
+      return featureAnswer(shape, request.number);
     default:
       return Error{"this kind of request is not answered here (an error of hapticd; please report it)"};
   }

@@ -65,6 +65,8 @@ class RequestHandler {
   Result<std::string> executeForModels(const control::Peer& peer, const control::Request& request);
   /// Answers requests that change nothing.
   Result<std::string> answerQuery(const control::Peer& peer, const control::Request& request);
+  /// Answers requests about one model that change nothing.
+  Result<std::string> answerModelQuery(const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
   Result<std::string> eventsAfter(double after) const;
   Result<std::string> subscribe(const control::Peer& peer);

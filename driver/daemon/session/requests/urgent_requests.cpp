@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.hpp"
+#include "base/happens_within.hpp"
 #include "session/requests/request_handler.hpp"
 
 namespace hapticd::servo {
@@ -45,10 +46,8 @@ Result<std::string> RequestHandler::hold(const std::string& device, const char*&
   held_at_.store(monotonicNow());
   runner_.hold(arms);
   if (runner_.loop().ticks() == 0) return good();  // no force has flowed yet, and the hold keeps it off
-  RealClock clock(0);
-  for (const Nanoseconds until = clock.now() + kPatience; !runner_.loop().holdsObeyed(arms) && clock.now() < until;)
-    clock.waitUntil(clock.now() + kPause);
-  if (runner_.loop().holdsObeyed(arms) || runner_.loop().finished()) return good();
+  const auto obeyed = [&] { return runner_.loop().holdsObeyed(arms) || runner_.loop().finished(); };
+  if (happensWithin(kPatience, kPause, obeyed)) return good();
   return Error{
       "the servo did not obey within 0.1 s: it may have stopped, and then its motors were cut: see hapticd ctl status"};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/happens_within.hpp"
 #include "base/os.hpp"
 #include "log/log.hpp"
 #include "session/messages/silence_reason.hpp"
@@ -203,7 +204,7 @@ Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<vo
   const auto watchdog = watchdogOf(watched, mayLag());
   if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
-  const bool anyhow = onlySimulated() || options_.allow_non_rt;
+  const bool anyhow = onlySimulated(arms_) || options_.allow_non_rt;
   os::Thread servo;
   if (auto started = startServo(servo, anyhow); !started) return started;
   lookAfter(proximity, anyhow, every);
@@ -237,10 +238,8 @@ void Runner::suspend() noexcept {
 /// Stops the process until it is continued. Called once forces are zero, and the last command has been sent.
 void Runner::stopProcess() {
   constexpr Nanoseconds kMostPatience = 1'000'000'000, kLastCommand = 20'000'000;
-  RealClock clock(0);
-  const Nanoseconds until = clock.now() + kMostPatience;
-  while (!loop_->finished() && !loop_->silent() && clock.now() < until) clock.waitUntil(clock.now() + kReadyPoll);
-  clock.waitUntil(clock.now() + kLastCommand);
+  happensWithin(kMostPatience, kReadyPoll, [this] { return loop_->finished() || loop_->silent(); });
+  RealClock(0).waitUntil(monotonicNow() + kLastCommand);
   suspend_ = false;
   if (guard_) guard_->arm(false);
   log::write(HSP_LOG_WARNING, "", "the process stops; forces are off");
@@ -265,7 +264,7 @@ std::vector<std::string> Runner::enterRealTime() const {
     if (const auto code = os::pinTo(*options_.cpu))
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
-    refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
+    refused.push_back(noFifo(options_.priority, code, !onlySimulated(arms_)));
   [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already
   return refused;
 }
@@ -286,12 +285,6 @@ void Runner::namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::stri
 void Runner::forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how) {
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->pusher(arm, place, 0, "");
   event_log_->pushesNoMore(arm, place, how);
-}
-
-bool Runner::onlySimulated() const {
-  for (const auto& arm : arms_)
-    if (!arm->simulated()) return false;
-  return true;
 }
 
 std::string Runner::faultOf(size_t arm) const {

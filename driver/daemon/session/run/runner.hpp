@@ -148,7 +148,6 @@ class Runner {
   void openEventLog();
   void lockMemory();
   std::vector<std::string> enterRealTime() const;  ///< [servo thread] @return messages for refused rights
-  bool onlySimulated() const;
 
   scene::Scene scene_;
   RunOptions options_;

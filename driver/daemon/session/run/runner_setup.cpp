@@ -67,13 +67,13 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
   if (auto opened = runner->openArms(log); !opened) return notOpened(opened, scene, options.virtual_time);
-  if (options.virtual_time && !runner->onlySimulated())
+  if (options.virtual_time && !onlySimulated(runner->arms_))
     return Error{
         "--virtual-time runs faster than a real clock, but the scene names real hardware; expected simulated devices "
         "only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
   runner->openEventLog();
-  LoopSettings settings = loopSettings(scene, options, runner->onlySimulated());
+  LoopSettings settings = loopSettings(scene, options, onlySimulated(runner->arms_));
   if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
   runner->openClock(settings);
   runner->loop_ = std::make_unique<Loop>(runner->world_->core(), runner->world_->lockstep(), runner->arms_,

@@ -6,9 +6,7 @@
 namespace hapticd::servo {
 
 WatchedServo::WatchedServo(Loop& loop, Arms& arms, const Telemetry& telemetry)
-    : loop_(loop), arms_(arms), telemetry_(telemetry) {
-  for (const auto& arm : arms_) simulated_ = simulated_ && arm->simulated();
-}
+    : loop_(loop), arms_(arms), telemetry_(telemetry), simulated_(onlySimulated(arms)) {}
 
 void WatchedServo::cut(double stuck_for) noexcept {
   for (const auto& arm : arms_) arm->cut(stuck_for);

@@ -32,7 +32,7 @@ class WatchedServo final : public watch::WatchTarget {
   Loop& loop_;
   Arms& arms_;
   const Telemetry& telemetry_;
-  bool simulated_ = true;
+  const bool simulated_;
 };
 
 }  // namespace hapticd::servo

@@ -169,8 +169,7 @@ void Flight::tickArm(const ArmColumns& columns, const Arm& arm, const Core& core
   out.mode = arm.command().mode;
   out.valid = probe.valid ? 1 : 0;
   copy3(out.position, probe.position);
-  out.orientation[0] = probe.orientation.w(), out.orientation[1] = probe.orientation.x();
-  out.orientation[2] = probe.orientation.y(), out.orientation[3] = probe.orientation.z();
+  storeQuaternion(probe.orientation, out.orientation);
   copy3(out.velocity, probe.velocity);
   copy3(out.force, core.force(index));
   copy3(out.torque, core.torque(index));

@@ -239,9 +239,8 @@ void reportArmAtEnd(const scene::Scene& scene, uint32_t index, const Walk& walk,
     if (seen.stops.ticks(i) > seen.stops.ticks(joint)) joint = i;
   const double share = static_cast<double>(seen.stops.ticks(joint)) / static_cast<double>(walk.ticks);
   if (share < kMuch) return;
-  const std::string key = fmt::format("models[{}].pose.position", seen.deepest);
-  document::report(
-      warnings, placeInModel(model, key), key,
+  reportInModel(
+      warnings, scene, seen.deepest, "pose.position",
       fmt::format("joint {} of {} is at the end of its range in {:.0f} % of the ticks, so the tip cannot follow the "
                   "hand, which touches {}: it presses and moves it less far than it wants to; expected a model nearer "
                   "to where the arm reaches; move it (pose.position) or the arm (mount.position)",
@@ -256,9 +255,7 @@ bool isOdd(const Walk& walk, size_t model) {
 
 /// Gives the warnings with which a run would end. The plugin is to blame, so they stand at the key that names it.
 void reportPlugin(const scene::Scene& scene, size_t index, const Walk& walk, document::Problems& warnings) {
-  const scene::Model& model = scene.models[index];
-  const std::string key = fmt::format("models[{}].plugin", index);
-  for (const std::string& text : walk.judged[index]) document::report(warnings, placeInModel(model, key), key, text);
+  for (const std::string& text : walk.judged[index]) reportInModel(warnings, scene, index, "plugin", text);
 }
 
 void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
@@ -299,9 +296,8 @@ void reportAllocations(const scene::Scene& scene, const Walk& walk, document::Pr
   for (size_t i = 0; i < scene.models.size() && !walk.allocates.empty(); ++i) {
     const scene::Model& model = scene.models[i];
     if (model.name != walk.allocates) continue;
-    const std::string key = fmt::format("models[{}].plugin", i);
-    document::report(
-        warnings, placeInModel(model, key), key,
+    reportInModel(
+        warnings, scene, i, "plugin",
         fmt::format("steps of {} allocate memory, which may have to wait, and then the tick is late; allocate it in "
                     "activate(): step(), which is touch() of a shape in C++, may not",
                     model.name));
@@ -314,9 +310,8 @@ void reportWaits(const scene::Scene& scene, const Walk& walk, document::Problems
   constexpr uint64_t kSeldom = 50;  // one in so many ticks
   if (walk.waits < kFew || walk.waits * kSeldom < walk.ticks) return;
   const scene::Model& model = scene.models[walk.waiter];
-  const std::string key = fmt::format("models[{}].plugin", walk.waiter);
-  document::report(
-      warnings, placeInModel(model, key), key,
+  reportInModel(
+      warnings, scene, walk.waiter, "plugin",
       fmt::format("steps of {} wait, in {} of {} ticks{}: they sleep, lock, or read or write a file, so ticks of a run "
                   "are late; step(), which is touch() of a shape in C++, may not wait; find the call with: hapticd "
                   "plugin check {}",
@@ -339,9 +334,8 @@ void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems&
   if (walk.models[slowest].seconds < kMost * kMostProcessor)
     return document::report(warnings, scene.file.string(), 1, 1, "models", what);
   const scene::Model& model = scene.models[slowest];
-  const std::string key = fmt::format("models[{}].plugin", slowest);
-  document::report(
-      warnings, placeInModel(model, key), key,
+  reportInModel(
+      warnings, scene, slowest, "plugin",
       fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
                   "measures it",
                   what, model.name, step * 1e3, walk.period * 1e3,

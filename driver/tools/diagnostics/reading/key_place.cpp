@@ -47,4 +47,10 @@ document::Place placeInModel(const scene::Model& model, const std::string& key) 
   return placeOfKey(model.place.file, key).value_or(model.place);
 }
 
+void reportInModel(document::Problems& problems, const scene::Scene& scene, size_t index, const char* key,
+                   const std::string& what) {
+  const std::string full = "models[" + std::to_string(index) + "]." + key;
+  document::report(problems, placeInModel(scene.models[index], full), full, what);
+}
+
 }  // namespace hapticd::diagnostics

@@ -22,4 +22,9 @@ std::optional<document::Place> placeOfKey(const document::Node& root, const std:
 /// [main] Returns the place of a key in the file of a model; the place of the model if the file does not have the key.
 document::Place placeInModel(const scene::Model& model, const std::string& key);
 
+/// [main] Reports a problem of a model at one of its keys. @param index of the model in the scene
+/// @param key below the model, such as "pose.position"
+void reportInModel(document::Problems& problems, const scene::Scene& scene, size_t index, const char* key,
+                   const std::string& what);
+
 }  // namespace hapticd::diagnostics

@@ -164,12 +164,11 @@ void reportDestructor(const host::ChildProgress& trail, const scene::Scene& scen
   const uint32_t index = trail.item();
   if (*trail.call() == '\0' || index >= scene.models.size()) return;
   const scene::Model& model = scene.models[index];
-  const std::string key = "models[" + std::to_string(index) + "].plugin";
-  document::report(warnings, placeInModel(model, key), key,
-                   "plugin '" + model.plugin + "' of model '" + model.name +
-                       "' crashes when the process ends, in a destructor of one of its static objects; a run ends "
-                       "with this crash after its report; correct it in the source of " +
-                       model.library.string());
+  reportInModel(warnings, scene, index, "plugin",
+                "plugin '" + model.plugin + "' of model '" + model.name +
+                    "' crashes when the process ends, in a destructor of one of its static objects; a run ends "
+                    "with this crash after its report; correct it in the source of " +
+                    model.library.string());
 }
 
 /// Packs the box of a model in its own frame; it is empty if the plugin does not report one.

@@ -154,12 +154,10 @@ void reportWalkEnd(const scene::Scene& scene, const std::string& how, const host
                    : ""));
   if (!known) return reportUnknownEnd(scene, how, warnings);
   const scene::Model& model = scene.models[index];
-  const std::string key = fmt::format("models[{}].plugin", index);
-  document::report(
-      warnings, placeInModel(model, key), key,
-      fmt::format("model {}: when the hand was moved, its plugin {}{}; a run would end there; find the cause "
-                  "with: hapticd plugin check {}",
-                  model.name, how, whereAtEnd(trail.call()), model.library.string()));
+  reportInModel(warnings, scene, index, "plugin",
+                fmt::format("model {}: when the hand was moved, its plugin {}{}; a run would end there; find the cause "
+                            "with: hapticd plugin check {}",
+                            model.name, how, whereAtEnd(trail.call()), model.library.string()));
 }
 
 }  // namespace hapticd::diagnostics

@@ -23,12 +23,6 @@ bool rests(const scene::Model& model, const host::ShapeInstance& shape) {
   return !model.kinematic && (shape.report().flags & HSP_R_MOVES) == 0;
 }
 
-void reportAt(const scene::Scene& scene, size_t index, const std::string& what, document::Problems& warnings) {
-  const std::string key = fmt::format("models[{}].pose.position", index);
-  const scene::Model& model = scene.models[index];
-  document::report(warnings, placeInModel(model, key), key, what);
-}
-
 struct EnclosedModel {
   size_t inner = 0, outer = 0;
   Vector3d center = Vector3d::Zero();  ///< [m] centre of the box of the inner model, world frame
@@ -116,12 +110,11 @@ document::Problems unreachableModels(const scene::Scene& scene, const servo::Wor
       end = tips[tip].tip + (scene.models[i].pose.position - tips[tip].tip).normalized() * tips[tip].reach;
     }
     if (least && *least > 0)
-      reportAt(scene, i,
-               fmt::format("no arm reaches {}: the nearest arm ends about {:.3g} m before it, at about [{:.2f}, "
-                           "{:.2f}, {:.2f}] in the world; move the model there (pose.position, in m) or the arm "
-                           "(mount.position of its device)",
-                           scene.models[i].name, *least, end.x(), end.y(), end.z()),
-               warnings);
+      reportInModel(warnings, scene, i, "pose.position",
+                    fmt::format("no arm reaches {}: the nearest arm ends about {:.3g} m before it, at about [{:.2f}, "
+                                "{:.2f}, {:.2f}] in the world; move the model there (pose.position, in m) or the arm "
+                                "(mount.position of its device)",
+                                scene.models[i].name, *least, end.x(), end.y(), end.z()));
   }
   return warnings;
 }
@@ -138,10 +131,10 @@ document::Problems enclosedModels(const scene::Scene& scene, const servo::World&
       if (!found || tried++ >= kMost) continue;
       const double depth = depthIn(scene, *found);
       if (depth < found->radius + kPressed) continue;
-      reportAt(scene, inner,
-               fmt::format("{} lies within {}, {:.3g} mm below its surface, so no hand touches it; move it outside",
-                           scene.models[inner].name, scene.models[outer].name, (depth - found->radius) * 1e3),
-               warnings);
+      reportInModel(
+          warnings, scene, inner, "pose.position",
+          fmt::format("{} lies within {}, {:.3g} mm below its surface, so no hand touches it; move it outside",
+                      scene.models[inner].name, scene.models[outer].name, (depth - found->radius) * 1e3));
       break;
     }
   return warnings;

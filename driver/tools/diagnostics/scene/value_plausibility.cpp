@@ -75,12 +75,10 @@ void reportIdlePoses(const scene::Scene& scene, const std::vector<bool>& placed,
     const scene::Model& model = scene.models[i];
     const std::string pose = poseText(model.pose);
     if (!placed[i] || model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
-    const std::string key = fmt::format("models[{}].pose", i);
-    document::report(
-        warnings, placeInModel(model, key), key,
-        fmt::format("has no effect: the path of {} gives its poses in the world; remove the pose, and add it "
-                    "to the rows of the path",
-                    model.name));
+    reportInModel(warnings, scene, i, "pose",
+                  fmt::format("has no effect: the path of {} gives its poses in the world; remove the pose, and add it "
+                              "to the rows of the path",
+                              model.name));
   }
 }
 

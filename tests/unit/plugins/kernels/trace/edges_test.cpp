@@ -27,7 +27,7 @@ struct EdgePoint {
 
 EdgePoint joinedAt(const Model& model, int index, int side, double fraction) {
   const Patch& patch = model.patch(index);
-  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  const Side& edge = patch.side(side);
   const Patch& next = model.patch(edge.patch);
   const auto uv = patch.onSide(side, fraction);
   spline::SurfacePoint E;
@@ -86,7 +86,7 @@ int expectContinuous(const Model& model, const std::string& name) {
   int circles = 0;
   for (int index = 0; index < model.patchCount(); ++index)
     for (int side = 0; side < kSides; ++side) {
-      if (model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kJoined) continue;
+      if (model.patch(index).side(side).kind != SideKind::kJoined) continue;
       for (double fraction : kFractions) {
         const EdgePoint edge = joinedAt(model, index, side, fraction);
         if (edge.n.dot(edge.m) > 0.99) continue;
@@ -151,7 +151,7 @@ TEST(Edges, ForceRoundOpenEdgesOfTheTeapotIsContinuous) {
   int circles = 0;
   for (int index = 0; index < model.patchCount(); ++index)
     for (int side = 0; side < kSides; ++side) {
-      if (model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      if (model.patch(index).side(side).kind != SideKind::kFree) continue;
       for (double fraction : kFractions) {
         ++circles;
         const Change worst = around(model, freeAt(model, index, side, fraction), kRadius);
@@ -173,7 +173,7 @@ TEST(Edges, ForceOverOpenEdgesOfTheTeapotChangesByNoMoreThanTheBevelLets) {
   for (int index = 0; index < model.patchCount(); ++index)
     for (int side = 0; side < kSides; ++side) {
       const bool buried = index >= 12 && index < 18;  // the handle, and where the spout begins
-      if (buried || model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      if (buried || model.patch(index).side(side).kind != SideKind::kFree) continue;
       ++rims;
       for (double fraction : kFractions) {
         const EdgePoint edge = freeAt(model, index, side, fraction);
@@ -210,7 +210,7 @@ TEST(Edges, ForceJumpsOnlyWhereTheNearestFootOfAPartDoes) {
   int jumps = 0;
   for (int index = 0; index < models[0].patchCount(); ++index)
     for (int side = 0; side < kSides; ++side) {
-      if (models[0].patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      if (models[0].patch(index).side(side).kind != SideKind::kFree) continue;
       const EdgePoint edge = freeAt(models[0], index, side, 0.37);
       Tracer tracers[] = {Tracer(models[0]), Tracer(models[1]), Tracer(models[2])};
       Vector3d last_force = Vector3d::Zero(), last_feet[3];

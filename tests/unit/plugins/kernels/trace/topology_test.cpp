@@ -51,7 +51,7 @@ double worstStepAcrossEdges(const Model& model) {
   for (int index = 0; index < model.patchCount(); ++index) {
     const Patch& patch = model.patch(index);
     for (int side = 0; side < kSides; ++side) {
-      const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+      const Side& edge = patch.side(side);
       if (edge.kind != SideKind::kJoined) continue;
       for (double fraction : {0.07, 0.37, 0.71}) {
         const auto uv = patch.onSide(side, fraction);

@@ -69,7 +69,7 @@ TEST(Tracer, TheTeapotsSharedEdgesAreNotFelt) {
   for (int index = 0; index < model.patchCount(); ++index) {
     const Patch& patch = model.patch(index);
     for (int side = 0; side < kSides; ++side) {
-      const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+      const Side& edge = patch.side(side);
       if (edge.kind != SideKind::kJoined) continue;
       const auto uv = patch.onSide(side, 0.37);
       const Patch& next = model.patch(edge.patch);

@@ -4,8 +4,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "servo/safety/passivity/bounds.hpp"
-#include "servo/safety/passivity/controller.hpp"
 #include "servo/velocity/estimator.hpp"
 
 namespace hapticd {
@@ -48,24 +46,6 @@ TEST(VelocityEstimator, RefusesWhatItCannotBe) {
   EXPECT_THROW(velocity::make("window", 2.5, 1000), std::invalid_argument);
   EXPECT_THROW(velocity::make("butterworth", 600, 1000), std::invalid_argument);
   EXPECT_THROW(velocity::make("wavelet", 3, 1000), std::invalid_argument);
-}
-
-TEST(PassivityBounds, NumericMaximumAgreesWithTheClosedForm) {
-  for (int n : {1, 2, 3, 5, 15}) {
-    const double k = passivity::maxStiffness(1, 0.5, n, 0, 1e-3);
-    EXPECT_NEAR(k * 1e-3 / 2 + passivity::windowCoefficient(n).value * 0.5, 1, 1e-6) << n;  // K T/2 + c_n B = b
-  }
-}
-
-TEST(PassivityController, TakesEnergyOnlyWhenTheBooksAreNegative) {
-  passivity::PassivityController controller(50);
-  for (int i = 0; i < 100; ++i) {  // pressed in: the hand gives energy
-    controller.update({-1e-5 * i, 0, 0}, {0.01 * i + 1e-3, 0, 0}, 1e-3);
-    EXPECT_EQ(controller.damping(), 0);
-  }
-  for (int i = 0; i < 100; ++i)  // an active wall gives back more
-    controller.update({-1e-3 + 1e-5 * i, 0, 0}, {5, 0, 0}, 1e-3);
-  EXPECT_GT(controller.dissipated(), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "servo/safety/passivity/bounds.hpp"
+#include "bounds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(QuantisedWall, MakesNoEnergyUpToTheBoundAndSomeTenPercentAbove) {
     device.damping = b, device.friction = c;
     Wall wall;
     wall.resolution = step, wall.period = period;
-    const double bound = passivity::maxStiffnessQuantised(b, c, step, period);
+    const double bound = maxStiffnessQuantised(wall, device);
     for (const double part : {0.1, 0.5, 0.9, 0.999}) {
       wall.stiffness = part * bound;
       EXPECT_GE(worstZigzagEnergy(wall, device), 0) << b << " " << c << " " << step << " at " << part;
@@ -34,12 +34,23 @@ TEST(QuantisedWall, MakesNoEnergyUpToTheBoundAndSomeTenPercentAbove) {
   }
 }
 
+TEST(DampedWall, HasTheBoundOfTheClosedFormWithoutDelay) {
+  for (int n : {1, 2, 3, 5, 15}) {
+    Wall wall;
+    wall.window = n, wall.damping = 0.5;
+    Body device;
+    device.damping = 1;
+    const double k = maxStiffness(wall, device);
+    EXPECT_NEAR(k * 1e-3 / 2 + windowCoefficient(n).value * 0.5, 1, 1e-6) << n;  // K T/2 + c_n B = b
+  }
+}
+
 /// Least energy over all frequencies that the samples can hold.
 double worstSinusoid(const Wall& wall, const Body& device) {
   double worst = 1e9;
   const int frequencies = support::kLong ? 160 : 40;
   for (int i = 1; i <= frequencies; ++i) worst = std::min(worst, sinusoidEnergy(wall, device, M_PI * i / frequencies));
-  const double theta = passivity::windowCoefficient(wall.window).theta;
+  const double theta = windowCoefficient(wall.window).theta;
   return std::min(worst, sinusoidEnergy(wall, device, theta));
 }
 
@@ -51,8 +62,8 @@ TEST(DampedWall, MakesNoEnergyUpToTheExactBoundAndSomeTenPercentAbove) {
       for (const double part : {0.0, 0.3, 0.8}) {
         Wall wall;
         wall.window = window, wall.delay = delay;
-        wall.damping = part / (passivity::windowCoefficient(window).value * (1 + 2 * delay));
-        const double bound = passivity::maxStiffness(device.damping, wall.damping, window, delay, wall.period);
+        wall.damping = part / (windowCoefficient(window).value * (1 + 2 * delay));
+        const double bound = maxStiffness(wall, device);
         if (bound <= 0) continue;
         Wall below = wall, above = wall;
         below.stiffness = 0.99 * bound, below.damping *= 0.99;
@@ -72,7 +83,7 @@ TEST(Hands, NoneMakesAWallBelowTheBoundGrowAndOneDoesTenPercentAbove) {
   for (const auto& each : walls) {
     Wall wall;
     wall.window = each.window, wall.delay = each.delay, wall.damping = each.damping;
-    const double bound = passivity::maxStiffness(device.damping, each.damping, each.window, each.delay, wall.period);
+    const double bound = maxStiffness(wall, device);
     double below = 0, above = 0;
     for (double theta = 0.05; theta < 3.2; theta += 0.05)
       for (double load = 1e-3; load < 2e3; load *= 3) {

@@ -30,6 +30,17 @@ double swingOf(double stiffness, PassivityController* controller) {
   return high - low;
 }
 
+TEST(Controller, TakesEnergyOnlyWhenTheBooksAreNegative) {
+  PassivityController controller(50);
+  for (int i = 0; i < 100; ++i) {  // pressed in: the hand gives energy
+    controller.update({-1e-5 * i, 0, 0}, {0.01 * i + 1e-3, 0, 0}, 1e-3);
+    EXPECT_EQ(controller.damping(), 0);
+  }
+  for (int i = 0; i < 100; ++i)  // an active wall gives back more
+    controller.update({-1e-3 + 1e-5 * i, 0, 0}, {5, 0, 0}, 1e-3);
+  EXPECT_GT(controller.dissipated(), 0);
+}
+
 TEST(Controller, CalmsAWallTenTimesTooStiff) {
   const double stiffness = 10 * 2 * 0.1 / kPeriod;
   PassivityController controller(stableDamping(0.075, kPeriod), 0.1);
