@@ -123,16 +123,17 @@ void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vecto
 }
 
 bool hasNoArea(const SurfaceData& surface) {
-  constexpr double kFlat = 1e-9;  // ratio of width and length
+  constexpr double kFlat = 1e-9;    // ratio of width and length
+  constexpr double kPoint = 1e-70;  // [m] squares of areas of this size vanish, and with them the normals
   const Eigen::Vector3d first = surface.points.front();
   Eigen::Vector3d far = Eigen::Vector3d::Zero();
-  double size = 0;  // [m] lengths are divided by it, because squares of large and of tiny lengths mean nothing
+  double size = 0;  // [m] lengths are divided by it, because squares of large ones overflow
   for (const Eigen::Vector3d& point : surface.points)
     if (const double way = (point - first).cwiseAbs().maxCoeff(); way > size) {
       size = way;
       far = point - first;
     }
-  if (!(size > 0)) return true;
+  if (!(size > kPoint)) return true;
   far /= size;
   return std::all_of(surface.points.begin(), surface.points.end(), [&](const Eigen::Vector3d& point) {
     return ((point - first) / size).cross(far).norm() <= kFlat * far.squaredNorm();

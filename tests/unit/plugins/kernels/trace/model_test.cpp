@@ -124,6 +124,7 @@ TEST(Model, ASurfaceWithoutAreaIsNotFelt) {
     const spline::SurfaceData line = flat({0, 0, 0.1}, {0, 0, 0.1}, end);
     const spline::SurfaceData floor = flat({-0.1, -0.1, 0}, {0.1, -0.1, 0}, {-0.1, 0.1, 0});
     EXPECT_THROW(Model({line}), std::invalid_argument);
+    EXPECT_THROW(Model({flat({0, 0, 0}, {1e-320, 0, 0}, {0, 1e-320, 0})}), std::invalid_argument) << "it is a point";
     const Model model({line, floor}), alone({floor});
     EXPECT_EQ(model.surfaceCount(), 2);
     Hand hand{model}, truth{alone};
