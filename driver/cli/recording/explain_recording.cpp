@@ -86,7 +86,7 @@ int explainRecording(const std::string& file) {
   printRun(file, **recording, *run);
   printEvents(servo::messagesOf(**recording, *run));
   printLines("marks", recordedMarks(**recording), "marks");
-  printLines("orders", recordedOrders(**recording, run->scene), "orders");
+  printLines("orders", recordedOrders(**recording, *run), "orders");
   printLines("touched", touchedFeatures(**recording, run->scene, run->facts.rate), "contacts");
   printLines("moved", jointRanges(**recording, run->scene, run->facts.rate), "poses");
   return kWorked;

@@ -26,7 +26,7 @@ struct Row {
 /// Names what the numbers of an order stand for.
 class Names {
  public:
-  explicit Names(const scene::Scene& scene) : scene_(scene) {}
+  explicit Names(const servo::RecordedRun& run) : run_(run), scene_(run.scene) {}
 
   std::string model(size_t place) const {
     return place < scene_.models.size() ? scene_.models[place].name : fmt::format("model {}", place);
@@ -34,8 +34,10 @@ class Names {
   std::string arm(size_t place) const {
     return place < scene_.devices.size() ? scene_.devices[place].name : fmt::format("arm {}", place);
   }
-  /// Only parameters that the scene gives have names in a recording.
+  /// Older recordings have the names of those parameters alone that the scene gives.
   std::string parameter(size_t place, uint32_t index) const {
+    const auto live = run_.live.find(model(place));
+    if (live != run_.live.end() && live->second.count(index) > 0) return live->second.at(index);
     if (place < scene_.models.size())
       for (const scene::Value& value : scene_.models[place].parameters)
         if (value.index == index) return value.id;
@@ -43,6 +45,7 @@ class Names {
   }
 
  private:
+  const servo::RecordedRun& run_;
   const scene::Scene& scene_;
 };
 
@@ -73,7 +76,7 @@ std::string words(const Row& row, const Names& names) {
 
 }  // namespace
 
-std::vector<std::string> recordedOrders(const record::Recording& recording, const scene::Scene& scene) {
+std::vector<std::string> recordedOrders(const record::Recording& recording, const servo::RecordedRun& run) {
   std::vector<std::string> lines;
   const record::RecordedStream* orders = recording.stream("orders");
   if (orders == nullptr) return lines;
@@ -83,7 +86,7 @@ std::vector<std::string> recordedOrders(const record::Recording& recording, cons
     columns[i] = orders->find(kNames[i]);
     if (columns[i] == nullptr) return lines;
   }
-  const Names names(scene);
+  const Names names(run);
   TickTimes times(recording);
   for (uint64_t row = 0; row < orders->rows(); ++row) {
     const auto at = [&](size_t column) { return orders->number(row, *columns[column]); };
