@@ -138,6 +138,10 @@ HandSettings handOf(const Parameters& p) {
   hand.approach = p.approach, hand.lead_in = p.lead_in;
   hand.tremor = p.tremor, hand.wander = p.wander;
   hand.seed = static_cast<uint64_t>(p.seed);
+  for (size_t i = 0; i + 1 < p.pressed.size(); i += 2)
+    if (!(p.pressed[i] < p.pressed[i + 1]))
+      throw std::invalid_argument("hand.pressed: row " + std::to_string(i / 2 + 1) +
+                                  " ends before it begins, expected rows [begin, end] in s, such as [[2, 4]]");
   return hand;
 }
 

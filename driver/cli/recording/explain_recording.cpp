@@ -102,7 +102,7 @@ int explainRecording(const std::string& file) {
   printRun(file, **recording, *run, models);
   printEvents(servo::messagesOf(**recording, *run, models));
   printLines("marks", markLines(**recording), "marks");
-  printLines("orders", recordedOrders(**recording, run->scene, models), "orders");
+  printLines("orders", recordedOrders(**recording, *run, models), "orders");
   printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");
   printLines("moved", jointRanges(**recording, models, run->facts.rate), "poses");
   return kWorked;

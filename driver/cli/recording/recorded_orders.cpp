@@ -26,23 +26,27 @@ struct Row {
 /// Names what the numbers of an order stand for.
 class Names {
  public:
-  Names(const scene::Scene& scene, const servo::RunModels& models) : scene_(scene), models_(models) {}
+  Names(const servo::RecordedRun& run, const servo::RunModels& models) : run_(run), models_(models) {}
 
   std::string model(const Row& row) const { return models_.nameOf(static_cast<double>(row.target), row.tick); }
   std::string arm(size_t place) const {
-    return place < scene_.devices.size() ? scene_.devices[place].name : fmt::format("arm {}", place);
+    return place < run_.scene.devices.size() ? run_.scene.devices[place].name : fmt::format("arm {}", place);
   }
-  /// Only parameters that the scene gives have names in a recording.
+  /// Recordings name all live parameters of the scene's models; older ones, and those of later models, name only what
+  /// the scene gives.
   std::string parameter(const Row& row) const {
     const size_t place = models_.find(static_cast<double>(row.target), row.tick);
-    if (place != servo::RunModels::kNone)
-      for (const scene::Value& value : models_.all()[place].model.parameters)
-        if (value.index == row.param) return value.id;
+    if (place == servo::RunModels::kNone) return fmt::format("parameter {}", row.param);
+    const servo::RunModel& one = models_.all()[place];
+    const auto live = one.since == 0 ? run_.live.find(one.model.name) : run_.live.end();
+    if (live != run_.live.end() && live->second.count(row.param) > 0) return live->second.at(row.param);
+    for (const scene::Value& value : one.model.parameters)
+      if (value.index == row.param) return value.id;
     return fmt::format("parameter {}", row.param);
   }
 
  private:
-  const scene::Scene& scene_;
+  const servo::RecordedRun& run_;
   const servo::RunModels& models_;
 };
 
@@ -73,7 +77,7 @@ std::string words(const Row& row, const Names& names) {
 
 }  // namespace
 
-std::vector<std::string> recordedOrders(const record::Recording& recording, const scene::Scene& scene,
+std::vector<std::string> recordedOrders(const record::Recording& recording, const servo::RecordedRun& run,
                                         const servo::RunModels& models) {
   std::vector<std::string> lines;
   const record::RecordedStream* orders = recording.stream("orders");
@@ -84,7 +88,7 @@ std::vector<std::string> recordedOrders(const record::Recording& recording, cons
     columns[i] = orders->find(kNames[i]);
     if (columns[i] == nullptr) return lines;
   }
-  const Names names(scene, models);
+  const Names names(run, models);
   TickTimes times(recording);
   for (uint64_t row = 0; row < orders->rows(); ++row) {
     const auto at = [&](size_t column) { return orders->number(row, *columns[column]); };

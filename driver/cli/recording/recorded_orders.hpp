@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "description/scene.hpp"
 #include "record/recording.hpp"
+#include "session/replay/about.hpp"
 #include "session/replay/run_models.hpp"
 
 namespace hapticd::cli {
@@ -13,7 +13,7 @@ namespace hapticd::cli {
 /// [main] Returns a line for each order, such as "2.0010 s  enable soft" or "0.1500 s  a program pushes on arm". Leads
 /// of models and hands, and models that came or left, are left out, because the events tell them; so are decisions of
 /// the servo itself. @param models those of this recording
-std::vector<std::string> recordedOrders(const record::Recording& recording, const scene::Scene& scene,
+std::vector<std::string> recordedOrders(const record::Recording& recording, const servo::RecordedRun& run,
                                         const servo::RunModels& models);
 
 }  // namespace hapticd::cli

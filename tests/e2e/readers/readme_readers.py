@@ -157,6 +157,7 @@ def own_scene(folder):
     shown = set(re.findall(r"`([\w/-]+)`", SCENES.split("## The scenes that ship")[1]))
     folder = pathlib.Path(SOURCE, "config/scenes")
     there = {str(file.relative_to(folder).with_suffix("")) for file in folder.rglob("*.yaml")}
+    there -= {"mine"}  # the scene that the README lets its reader save there
     check("the guide lists every scene that ships, and no other", there == shown, there ^ shown)
 
 

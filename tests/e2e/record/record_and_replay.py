@@ -102,12 +102,14 @@ def ordersAreTold(folder, environment):
         ask = program(HAPTICD, environment, together=True)
         code, told = ask("ctl", "--name", "told", "--wait", "30", "set", "teapot", "stiffness", "600", "--consent")
         check("a parameter is set", code == 0, told)
+        code, told = ask("ctl", "--name", "told", "set", "teapot", "texture.wavelength", "0.003", "--consent")
+        check("and one that the scene does not give", code == 0, told)
         check("a model is disabled", ask("ctl", "--name", "told", "disable", "teapot")[0] == 0)
         time.sleep(1.5)
         ask("ctl", "--name", "told", "stop")
         run.wait(60)
     code, told = hapticd("explain", file)
-    for words in (" s  set teapot stiffness 600\n", " s  disable teapot\n", " of it the model gave no force (it was disabled"):
+    for words in (" s  set teapot stiffness 600\n", " s  set teapot texture.wavelength 0.003\n", " s  disable teapot\n", " of it the model gave no force (it was disabled"):
         check(f"explain tells: {words.strip()}", code == 0 and words in told, told)
 
 

@@ -16,6 +16,7 @@
 #include "base/regular_file.hpp"
 #include "document/json_text.hpp"
 #include "document/node.hpp"
+#include "host/class_params.hpp"
 #include "record/scene_json.hpp"
 #include "session/replay/former_defaults.hpp"
 #include "session/telemetry/event_finder.hpp"
@@ -122,6 +123,15 @@ Json filesJson(const scene::Scene& scene) {
   return list;
 }
 
+/// Lists names and indices of the parameters that may change in a run: its orders have the indices.
+Json liveJson(const hsp_class& shape) {
+  Json list = Json::array();
+  for (uint32_t i = 0; i < shape.param_count; ++i)
+    if (const hsp_param& param = host::paramAt(shape, i); (param.flags & HSP_P_LIVE) != 0)
+      list.push_back({{"id", param.id}, {"index", i}});
+  return list;
+}
+
 /// Lists the streams in the order of their numbers, with name and size of a row.
 Json streamsJson(const std::vector<record::StreamSpec>& streams) {
   Json list = Json::array();
@@ -154,7 +164,8 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const Arms
   for (const auto& shape : world.shapes()) {
     if (!shape) continue;
     const hsp_class& c = shape->description();
-    models.push_back({{"name", shape->name()}, {"plugin", c.name}, {"id", c.id}, {"version", c.version}});
+    models.push_back(
+        {{"name", shape->name()}, {"plugin", c.name}, {"id", c.id}, {"version", c.version}, {"live", liveJson(c)}});
   }
   for (const auto& arm : arms) {
     const hdv_class& c = arm->device().description();
@@ -217,6 +228,9 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     for (const Json& model : json.at("models"))
       for (scene::Model& other : run.scene.models)
         if (model.at("name") == other.name) useFormerDefaults(other, model.at("id"), model.at("version"));
+    for (const Json& model : json.at("models"))
+      for (const Json& live : model.value("live", Json::array()))
+        run.live[model.at("name")][live.at("index").get<uint32_t>()] = live.at("id");
     const bool possible = std::isfinite(run.facts.rate) && run.facts.rate > 0 && run.facts.period_ns > 0;
     if (!possible || run.devices.size() != run.scene.devices.size())
       return Error{"the recording is damaged: its description has an impossible rate or impossible devices"};

@@ -2,6 +2,7 @@
 /// The part of a recording that describes the run and is stored beside the rows: versions, the whole scene, what each
 /// device reported about itself, and a fingerprint of every file on which forces depend.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,8 @@ struct RecordedRun {
   std::vector<hdv_info> devices;
   std::vector<Fingerprint> files;
   std::string version, started;
+  /// live parameters: their names by the name of the model and their index; empty in old recordings
+  std::map<std::string, std::map<uint32_t, std::string>> live;
   /// processor instructions that the shapes used; "" in old recordings, which do not contain them
   std::string instructions;
 };

@@ -356,9 +356,8 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   auto ring = record::FlightRing::create(streams, {});
   if (!ring) return Error{ring.error()};
   replay->telemetry_ = std::make_unique<Telemetry>(scene, options.rate);
-  auto flight = std::make_unique<Flight>(std::move(*ring), replay->arms_, scene.models.size());
-  if (replay->run_.facts.counts_unfelt) flight->countUnfelt();
-  replay->telemetry_->attach(std::move(flight));
+  replay->telemetry_->attach(std::make_unique<Flight>(std::move(*ring), replay->arms_, scene.models.size()));
+  if (replay->run_.facts.counts_unfelt) replay->telemetry_->flight()->countUnfelt();
   replay->player_ = std::make_unique<Player>(*replay, replay->telemetry_->flight()->ring());
   LoopSettings settings;
   settings.period_ns = replay->run_.facts.period_ns;

@@ -63,6 +63,10 @@ TEST(Simulated, TheHandHoldsItsButtonAtTheGivenTimes) {
   Module none, arm;
   ASSERT_EQ(none.start(), HSP_OK) << none.said;
   EXPECT_EQ(none.info.buttons, 0u);
+  Module wrong;
+  wrong.set("hand.pressed", std::vector<double>{1, 2, 4, 3});
+  EXPECT_LT(wrong.start(), 0);
+  EXPECT_NE(wrong.said.find("hand.pressed: row 2 ends before it begins"), std::string::npos) << wrong.said;
   arm.set("hand.pressed", std::vector<double>{0.01, 0.03, 0.04, 0.05});
   ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
   EXPECT_EQ(arm.info.buttons, 1u);
