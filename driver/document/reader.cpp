@@ -338,7 +338,8 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
   for (const Key& wanted : table.keys)
     if (wanted.required && node.find(wanted.name) == nullptr &&
         std::find(misspelt.begin(), misspelt.end(), &wanted) == misspelt.end())
-      problem(node, joined(key, wanted.name), std::string("missing, expected ") + wanted.expected());
+      problem(node, joined(key, wanted.name),
+              "missing, expected " + wanted.expected() + (wanted.type == Type::kList ? "; [] for none" : ""));
 }
 
 }  // namespace hapticd::document
