@@ -72,6 +72,11 @@ void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept
   const Patch& piece = model_.patch(tracks_[track].patch);
   const LocalFoot& local = tracks_[track].foot;
   const Vector3d r = p - local.S;
+  if (!model_.hasArea()) {  // it has no normal, and an arbitrary one would pull a hand from anywhere
+    foot.normal = foot.distance > kTouching ? Vector3d(r / foot.distance) : Vector3d(0, 0, 1);
+    foot.depth = foot.behind = -foot.distance;
+    return;
+  }
   if (local.sides == 0) {
     foot.normal = surfaceNormal(track);
     foot.depth = foot.behind = -r.dot(foot.normal);

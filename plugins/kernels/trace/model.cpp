@@ -13,10 +13,6 @@ namespace hapticd::trace {
 Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options) {
   if (surfaces.empty()) throw std::invalid_argument("model: there are no surfaces, expected at least one");
   const std::vector<SidePieces> sides = split(surfaces, options.form);
-  if (patches_.empty())
-    throw std::invalid_argument(
-        "model: no surface has an area, because the points of each lie in one place or on one line; expected at least "
-        "one surface with an area");
   tree_.build();
   bounds_ = tree_.bounds();
   constexpr double kMostCoordinate = 1e60;  // [m] products of four larger lengths overflow
@@ -35,14 +31,15 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
 
 std::vector<SidePieces> Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
   std::vector<SidePieces> sides;
+  has_area_ = !std::all_of(surfaces.begin(), surfaces.end(), spline::hasNoArea);
   first_patch_.reserve(surfaces.size() + 1);
   patches_.reserve(surfaces.size());
   for (std::size_t source = 0; source < surfaces.size(); ++source) {
     first_patch_.push_back(patchCount());
     const std::string& name = surfaces[source].name;
     names_.push_back(name.empty() ? "surface " + std::to_string(source) : "surface '" + name + "'");
-    // A point or a line has no normal, so no side of it is inside: it would pull the hand from anywhere.
-    if (spline::hasNoArea(surfaces[source])) continue;
+    // A point or a line has no inside. Inside of the others it must not be the nearest.
+    if (has_area_ && spline::hasNoArea(surfaces[source])) continue;
     for (const spline::SurfaceData& part : spline::splitAtCreases(surfaces[source])) {
       Patch patch;
       patch.surface = spline::Surface(part, form);

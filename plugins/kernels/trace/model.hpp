@@ -71,7 +71,10 @@ class Model {
   int surfaceCount() const noexcept { return static_cast<int>(first_patch_.size()) - 1; }
   int patchCount() const noexcept { return static_cast<int>(patches_.size()); }
   const Patch& patch(int index) const noexcept { return patches_[static_cast<std::size_t>(index)]; }
-  /// [any] The patches of a surface are those from firstPatch() to lastPatch() - 1. A surface without area has none.
+  /// [any] False if the points of each surface lie in one place or on one line. Such a model has no inside.
+  bool hasArea() const noexcept { return has_area_; }
+  /// [any] The patches of a surface are those from firstPatch() to lastPatch() - 1. A surface without area has none if
+  /// another surface has an area.
   int firstPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface)]; }
   int lastPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface) + 1]; }
 
@@ -111,6 +114,7 @@ class Model {
   std::vector<int> part_;        ///< part of each shell
   std::vector<int> patch_part_;  ///< part of each patch
   int part_count_ = 1;
+  bool has_area_ = true;
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;
   BoxTree tree_;

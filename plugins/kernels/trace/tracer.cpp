@@ -177,7 +177,9 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
 /// compiler constructs the Foot directly in the caller's memory and copies nothing.
 Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions& options, int budget) noexcept {
   Foot foot;
-  if (options.unite && model_.partCount() > 1) {
+  if (!model_.hasArea()) {  // nothing that a path could cross
+    foot = nearestFoot(-1, p, options);
+  } else if (options.unite && model_.partCount() > 1) {
     foot = nearestFoot(-1, p, options);
     if (contact::found(foot)) uniteParts(p, last, options, foot);
   } else if (!(options.rule.hysteresis > 0) && options.rule.sides == contact::Sides::kFront) {
