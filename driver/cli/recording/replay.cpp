@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,14 +38,21 @@ struct ReplayArguments {
   bool json = false;
 };
 
-/// Finds plugins and modules on this machine, because the recording may come from another one.
-Result<void> findLibraries(scene::Scene& scene) {
-  for (scene::Model& model : scene.models) {
-    auto found = catalog().shape(model.plugin);
-    if (!found) return Error{"model '" + model.name + "': " + found.error()};
-    model.library = (*found)->file;
-  }
-  for (scene::Device& device : scene.devices) {
+Result<void> findLibrary(scene::Model& model) {
+  auto found = catalog().shape(model.plugin);
+  if (!found) return Error{"model '" + model.name + "': " + found.error()};
+  model.library = (*found)->file;
+  return {};
+}
+
+/// Finds plugins and modules on this machine, because the recording may come from another one. The replay ends where a
+/// model came whose plugin is missing.
+Result<void> findLibraries(servo::RecordedRun& run) {
+  for (scene::Model& model : run.scene.models)
+    if (auto found = findLibrary(model); !found) return found;
+  for (servo::RunModel& one : run.later)
+    if (auto found = one.lack.empty() ? findLibrary(one.model) : Result<void>(); !found) one.lack = found.error();
+  for (scene::Device& device : run.scene.devices) {
     auto found = catalog().device(device.module);
     if (!found) return Error{"device '" + device.name + "': " + found.error()};
     device.library = (*found)->file;
@@ -53,47 +62,51 @@ Result<void> findLibraries(scene::Scene& scene) {
 
 constexpr const char* kForm = "expected MODEL.PARAMETER=NUMBER";
 
+/// The models of the scene, and those that came later and can be replayed.
+std::vector<scene::Model*> modelsOf(servo::RecordedRun& run) {
+  std::vector<scene::Model*> models;
+  for (scene::Model& model : run.scene.models) models.push_back(&model);
+  for (servo::RunModel& one : run.later)
+    if (one.lack.empty()) models.push_back(&one.model);
+  return models;
+}
+
+using Models = std::vector<scene::Model*>;
+
 /// Returns "; did you mean ball.stiffness=3?" with the first model that has the parameter of "stiffness=3"; "" if none
 /// has it.
-std::string meantModel(const scene::Scene& scene, const std::string& text) {
+std::string meantModel(const Models& models, const std::string& text) {
   const std::string id = text.substr(0, text.find('='));
-  for (const scene::Model& model : scene.models)
-    if (auto found = catalog().shape(model.plugin); found && (*found)->indexOf(id) >= 0)
-      return "; did you mean " + model.name + "." + text + "?";
+  for (const scene::Model* model : models)
+    if (auto found = catalog().shape(model->plugin); found && (*found)->indexOf(id) >= 0)
+      return "; did you mean " + model->name + "." + text + "?";
   return "";
 }
 
 /// Returns what is wrong with a change as a text, such as "teapot.stiffness900"; "" if nothing is.
-std::string wrongForm(const scene::Scene& scene, const std::string& text) {
+std::string wrongForm(const Models& models, const std::string& text) {
   const size_t equals = text.find('='), dot = text.find('.');
   if (equals == std::string::npos) return std::string("no value is given, ") + kForm;
   if (dot == std::string::npos || dot > equals)
-    return std::string("no model is named, ") + kForm + meantModel(scene, text);
+    return std::string("no model is named, ") + kForm + meantModel(models, text);
   const std::string value = text.substr(equals + 1);
   return document::toNumber(value) ? "" : "\"" + value + "\" is not a number, " + kForm;
 }
 
-std::vector<std::string> modelNames(const scene::Scene& scene) {
+/// The names, each one once: after a reload, a later model has the name of one of the scene.
+std::vector<std::string> namesOf(const Models& models) {
   std::vector<std::string> names;
-  for (const scene::Model& model : scene.models) names.push_back(model.name);
+  for (const scene::Model* model : models)
+    if (std::find(names.begin(), names.end(), model->name) == names.end()) names.push_back(model->name);
   return names;
 }
 
-/// Parses a change such as "teapot.stiffness=900" and applies it to a parameter of a model.
-Result<void> change(scene::Scene& scene, const std::string& text) {
-  if (const std::string wrong = wrongForm(scene, text); !wrong.empty()) return Error{"--set " + text + ": " + wrong};
-  const size_t equals = text.find('='), dot = text.find('.');
-  const double number = document::toNumber(text.substr(equals + 1)).value_or(NAN);  // wrongForm() has checked it
-  const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
-  const auto model =
-      std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
-  if (model == scene.models.end())
-    return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
-                 document::listedFor(name, modelNames(scene)) + document::suggestionOfName(name, modelNames(scene))};
-  auto found = catalog().shape(model->plugin);
+/// Applies a change such as "teapot.stiffness=900" to the parameter of one model.
+Result<void> changeModel(scene::Model& model, const std::string& id, double number, const std::string& text) {
+  auto found = catalog().shape(model.plugin);
   const int index = found ? (*found)->indexOf(id) : -1;
   if (index < 0)
-    return Error{"--set " + text + ": plugin " + model->plugin + " has no parameter \"" + id + "\"" +
+    return Error{"--set " + text + ": plugin " + model.plugin + " has no parameter \"" + id + "\"" +
                  (found ? document::suggestionOfName(id, (*found)->paramIds()) : "")};
   const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
   const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
@@ -102,8 +115,8 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
     return Error{fmt::format("--set {}: {:g} is out of range, expected {:g} to {:g} {}", text, number, param.min,
                              param.max, param.unit)};
   const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
-  auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
-  if (value == model->parameters.end()) value = model->parameters.insert(value, scene::Value{});
+  auto value = std::find_if(model.parameters.begin(), model.parameters.end(), same);
+  if (value == model.parameters.end()) value = model.parameters.insert(value, scene::Value{});
   value->id = id;
   value->index = static_cast<uint32_t>(index);
   value->kind = param.kind;
@@ -111,14 +124,37 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
   return {};
 }
 
+/// Parses a change such as "teapot.stiffness=900" and applies it to all models of that name.
+Result<void> change(const Models& models, const std::string& text) {
+  if (const std::string wrong = wrongForm(models, text); !wrong.empty()) return Error{"--set " + text + ": " + wrong};
+  const size_t equals = text.find('='), dot = text.find('.');
+  const double number = document::toNumber(text.substr(equals + 1)).value_or(NAN);  // wrongForm() has checked it
+  const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
+  const std::vector<std::string> names = namesOf(models);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
+                 document::listedFor(name, names) + document::suggestionOfName(name, names)};
+  for (scene::Model* model : models)
+    if (model->name == name)
+      if (auto changed = changeModel(*model, id, number, text); !changed) return changed;
+  return {};
+}
+
 void warnOfChanges(const servo::RecordedRun& run) {
   if (run.version != HAPTICD_VERSION)
     std::fprintf(stderr, "warning: hapticd %s recorded this run, and this is hapticd %s: the results may differ\n",
                  run.version.c_str(), HAPTICD_VERSION);
-  for (const servo::Fingerprint& file : run.files)
-    if (const std::string now = servo::fingerprint(file.path); !now.empty() && now != file.hash)
-      std::fprintf(stderr, "warning: %s has changed since the recording, so the results may differ\n",
-                   file.path.c_str());
+  std::vector<servo::Fingerprint> files = run.files;
+  for (const servo::RunModel& one : run.later) files.insert(files.end(), one.files.begin(), one.files.end());
+  std::map<std::string, std::string> now;
+  std::set<std::string> changed;
+  for (const servo::Fingerprint& file : files) {
+    const auto [found, is_new] = now.try_emplace(file.path);
+    if (is_new) found->second = servo::fingerprint(file.path);
+    if (!found->second.empty() && found->second != file.hash) changed.insert(file.path);
+  }
+  for (const std::string& path : changed)
+    std::fprintf(stderr, "warning: %s has changed since the recording, so the results may differ\n", path.c_str());
 }
 
 /// Uses the processor instructions of the recorded run if this machine has them; otherwise prints a note.
@@ -176,9 +212,10 @@ int replay(const ReplayArguments& options) {
   if (!recording) return fail(kBadInput, recording.error());
   auto run = servo::readAbout((*recording)->aboutJson());
   if (!run) return fail(kBadInput, options.file + ": " + run.error());
-  if (auto found = findLibraries(run->scene); !found) return fail(kBadInput, options.file + ": " + found.error());
+  run->later = servo::RunModels(**recording, run->scene).later();
+  if (auto found = findLibraries(*run); !found) return fail(kBadInput, options.file + ": " + found.error());
   for (const std::string& text : options.changes)
-    if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
+    if (auto done = change(modelsOf(*run), text); !done) return fail(kBadInput, done.error());
   takeInstructions(*run);
   warnOfChanges(*run);
   noteOpenEnd(options.file, **recording, "replaying");
@@ -205,8 +242,8 @@ void addReplay(const Command& app, int& exit_code) {
   command.addFlag("--json", options->json, "print the outcome as JSON");
   command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
-      "the same\nas far as the run could be replayed: a replay ends where models were added or removed, or where the "
-      "file is damaged.\n\nExample:\n  "
+      "the same\nas far as the run could be replayed: a replay ends where a model was added that cannot be built, or "
+      "where the file is damaged.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
   command.callback([options, &exit_code] {
     exit_code = replay(*options);

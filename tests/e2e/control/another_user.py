@@ -35,7 +35,7 @@ class Daemon:
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
         self.environment.pop("XDG_RUNTIME_DIR", None)
         self.socket = os.path.join(folder, "other.sock")
-        self.run = subprocess.Popen([HAPTICD, "run", self.file("own", "sphere", 0o600), "--name", "other", "--for", "120"],
+        self.run = subprocess.Popen([HAPTICD, "run", self.file("own", "sphere", 0o600), "--name", "other", "--for", "120", "--record", os.path.join(folder, "run.h5")],
                                     env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         until(lambda: os.path.exists(self.socket) and self.ctl("status", user=0)[0] == 0, 40)
         self.group = os.stat(self.socket).st_gid
@@ -149,6 +149,13 @@ def reloads(daemon):
     check("the daemon's user may all that", code == 0, said)
 
 
+def replays(folder):
+    """The recording has the hashes of what was passed, under the names of the asking program."""
+    done = subprocess.run([HAPTICD, "replay", os.path.join(folder, "run.h5")], capture_output=True, text=True, timeout=60)
+    check("a file that was passed and is there is the same for a replay", "has changed" not in done.stderr, done)
+    check("one that is not there ends it", done.returncode == 3 and "\"there\" was added: " in done.stderr and "/nowhere/models/there.yaml" in done.stderr, done)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     os.chmod(folder, 0o755)
     daemon = Daemon(folder)
@@ -159,4 +166,5 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     finally:
         daemon.run.terminate()
         daemon.run.wait(60)
+    replays(folder)
 finish()

@@ -122,23 +122,7 @@ def oneRecording(folder):
     check("and its recording replays", done.returncode == 0, done)
 
 
-def partly(folder):
-    """A script does not take the beginning of a recording for the whole."""
-    file = os.path.join(folder, "part.h5")
-    daemon = Daemon(folder, "--record", file).ready()
-    other = os.path.join(folder, "other.yaml")
-    with open(other, "w") as out:
-        out.write("hapticd: 1\nmodels:\n  - {name: other, plugin: nurbs_rigid, parameters: {geometry: "
-                  f"{os.path.abspath(SCENES)}/../models/sphere.yaml}}}}\n")
-    told = daemon.ctl("add", other)
-    check("a model is added", told[0] == 0, told)
-    time.sleep(0.5)
-    daemon.end()
-    done = subprocess.run([HAPTICD, "replay", file], capture_output=True, text=True, timeout=60)
-    check("a replay that ends where models came has a code of its own", done.returncode == 3 and "added or removed" in done.stderr, done)
-
-
-CASES = [pipes, idle, sameName, unnamedTogether, oneRecording, partly]
+CASES = [pipes, idle, sameName, unnamedTogether, oneRecording]
 for case in CASES:
     with tempfile.TemporaryDirectory() as scratch:
         case(scratch)

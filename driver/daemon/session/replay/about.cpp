@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -108,27 +107,34 @@ hdv_info toInfo(const Json& json) {
   return info;
 }
 
-/// Lists every file on which the forces of the scene depend.
-Json filesJson(const scene::Scene& scene) {
-  constexpr uint32_t kPath = HSP_PATH;
-  std::set<std::string> files;
-  for (const scene::Model& model : scene.models) {
-    files.insert(model.library.string());
-    for (const scene::Value& value : model.parameters)
-      if (value.kind == kPath && !value.text.empty()) files.insert(value.text);
-  }
-  for (const scene::Device& device : scene.devices) files.insert(device.library.string());
-  Json list = Json::array();
-  for (const std::string& file : files) list.push_back({{"path", file}, {"hash", fingerprint(file)}});
-  return list;
-}
-
 /// Lists names and indices of the parameters that may change in a run: its orders have the indices.
 Json liveJson(const hsp_class& shape) {
   Json list = Json::array();
   for (uint32_t i = 0; i < shape.param_count; ++i)
     if (const hsp_param& param = host::paramAt(shape, i); (param.flags & HSP_P_LIVE) != 0)
       list.push_back({{"id", param.id}, {"index", i}});
+  return list;
+}
+
+Json modelsJson(const World& world) {
+  Json list = Json::array();
+  for (const auto& shape : world.shapes()) {
+    if (!shape) continue;
+    const hsp_class& c = shape->description();
+    list.push_back(
+        {{"name", shape->name()}, {"plugin", c.name}, {"id", c.id}, {"version", c.version}, {"live", liveJson(c)}});
+  }
+  return list;
+}
+
+/// Lists every file on which the forces of the scene depend.
+Json filesJson(const scene::Scene& scene) {
+  std::set<std::string> files;
+  for (const scene::Model& model : scene.models)
+    for (std::string& file : filesOf(model)) files.insert(std::move(file));
+  for (const scene::Device& device : scene.devices) files.insert(device.library.string());
+  Json list = Json::array();
+  for (const std::string& file : files) list.push_back({{"path", file}, {"hash", fingerprint(file)}});
   return list;
 }
 
@@ -147,26 +153,9 @@ std::string textOf(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string fingerprint(const std::string& file) {
-  const auto fd = openRegular(file);
-  if (!fd) return "";
-  uint64_t hash = 0xcbf29ce484222325;
-  char buffer[1 << 14];
-  for (ssize_t got = 0; (got = read(*fd, buffer, sizeof buffer)) > 0;)
-    for (ssize_t i = 0; i < got; ++i) hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3;
-  close(*fd);
-  return fmt::format("{:016x}", hash);
-}
-
 record::About aboutRun(const scene::Scene& scene, const World& world, const Arms& arms, const RunFacts& facts,
                        const std::vector<record::StreamSpec>& streams) {
-  Json models = Json::array(), devices = Json::array();
-  for (const auto& shape : world.shapes()) {
-    if (!shape) continue;
-    const hsp_class& c = shape->description();
-    models.push_back(
-        {{"name", shape->name()}, {"plugin", c.name}, {"id", c.id}, {"version", c.version}, {"live", liveJson(c)}});
-  }
+  Json devices = Json::array();
   for (const auto& arm : arms) {
     const hdv_class& c = arm->device().description();
     devices.push_back({{"name", arm->device().name()},
@@ -193,7 +182,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const Arms
                {"slow_arms_push_less", !facts.full_when_slow},
                {"depth_of_felt_models", !facts.counts_unfelt},
                {"spares_steady_pushes", !facts.former_passivity},
-               {"models", std::move(models)},
+               {"models", modelsJson(world)},
                {"devices", std::move(devices)},
                {"files", filesJson(scene)}};
   json["streams"] = streamsJson(streams);

@@ -10,6 +10,8 @@
 #include "base/result.hpp"
 #include "record/layout.hpp"
 #include "servo/arm/arm.hpp"
+#include "session/replay/fingerprint.hpp"
+#include "session/replay/run_models.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::servo {
@@ -30,17 +32,13 @@ struct RunFacts {
 record::About aboutRun(const scene::Scene& scene, const World& world, const Arms& arms, const RunFacts& facts,
                        const std::vector<record::StreamSpec>& streams);
 
-/// A file on which forces depend, with its fingerprint during the run.
-struct Fingerprint {
-  std::string path, hash;
-};
-
 /// The description of a recorded run, as a replay needs it.
 struct RecordedRun {
   RunFacts facts;
   scene::Scene scene;
   std::vector<hdv_info> devices;
   std::vector<Fingerprint> files;
+  std::vector<RunModel> later;  ///< models that came during the run: RunModels::later(), because rows describe them
   std::string version, started;
   /// live parameters: their names by the name of the model and their index; empty in old recordings
   std::map<std::string, std::map<uint32_t, std::string>> live;
@@ -50,8 +48,5 @@ struct RecordedRun {
 
 /// [main] Reads the description from a recording. An error says what is wrong with the text.
 Result<RecordedRun> readAbout(const std::string& json_text);
-
-/// [main] Returns the FNV-1a hash of a file's bytes in hexadecimal, or "" if the file cannot be read.
-std::string fingerprint(const std::string& file);
 
 }  // namespace hapticd::servo

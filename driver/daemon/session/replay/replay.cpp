@@ -10,6 +10,7 @@
 #include "base/not_real_time.hpp"
 #include "base/offline_tick.hpp"
 #include "session/messages/setup_watch.hpp"
+#include "session/replay/replayable.hpp"
 #include "world/arm_force.hpp"
 
 namespace hapticd::servo {
@@ -48,40 +49,6 @@ SampleColumns sampleColumns(const RecordedStream& ticks, size_t index) {
           find("q0"),          find("dq0"),          find("measured0")};
 }
 
-/// True for streams that recordings of version 0.1 do not have.
-bool isLater(const std::string& stream) {
-  static constexpr std::string_view kLater[] = {"leads", "events", "pushes", "links", "motors"};
-  return std::find(std::begin(kLater), std::end(kLater), stream) != std::end(kLater);
-}
-
-/// Returns what the recording lacks for a replay, or "".
-std::string missingIn(const record::Recording& recording, const RecordedRun& run,
-                      const std::vector<record::StreamSpec>& wanted) {
-  for (const record::StreamSpec& spec : wanted) {
-    if (spec.name == "marks") continue;  // they are neither repeated nor compared, and once had fewer columns
-    const RecordedStream* stream = recording.stream(spec.name);
-    if (stream == nullptr && isLater(spec.name)) continue;  // the recording is older than this stream
-    if (stream == nullptr) return "has no " + spec.name;
-    if (stream->lost() > 0)
-      return "lacks " + std::to_string(stream->lost()) + " rows of " + spec.name +
-             (recording.blackBox() ? ": a black box keeps only the newest rows; record with --record" : "");
-    if (stream->rowBytes() != spec.layout.rowBytes())
-      return "has rows of " + spec.name + " with " + std::to_string(stream->rowBytes()) + " bytes, expected " +
-             std::to_string(spec.layout.rowBytes()) + ": replay it with the hapticd that recorded it";
-    for (const Column& column : spec.layout.columns()) {
-      const Column* found = stream->find(column.name);
-      if (found == nullptr || found->offset != column.offset || found->type != column.type)
-        return "has no column " + column.name + " of " + spec.name +
-               " at the place where this hapticd expects it: replay it with the hapticd that recorded it";
-    }
-  }
-  const RecordedStream& ticks = *recording.stream("ticks");
-  if (ticks.rows() == 0) return "has no ticks";
-  if (ticks.number(0, *ticks.find("tick")) != 0)
-    return "begins in the middle of a run; record from the start with --record";
-  return run.devices.empty() ? "names no device" : "";
-}
-
 }  // namespace
 
 /// A clock that, before each tick, compares the rows of the last tick and prepares the recorded inputs of the next one.
@@ -94,9 +61,8 @@ class Replay::Player final : public Clock {
     compared_.resize(recorded_.size());
     outcome.recorded_ticks = ticks_.rows();
     now_ = timeOf(0);
-    end_ = std::min(ticks_.rows(), endOfScene());
-    if (end_ < ticks_.rows())
-      outcome.note = "the replay ends at tick " + std::to_string(end_) + ", in which models were added or removed";
+    end_ = std::min(ticks_.rows(), replay.later_.end());
+    if (end_ < ticks_.rows()) outcome.note = replay.later_.why();
   }
 
   Nanoseconds now() noexcept HSP_RT override { return now_; }
@@ -110,9 +76,10 @@ class Replay::Player final : public Clock {
       return now_ = std::max(deadline, now_);
     }
     now_ = replay_.paced_ ? timeOf(tick_) : std::max(timeOf(tick_), deadline);
+    destroyReleased();
     feedArms();
-    feedRecords();
     feedOrders();
+    feedRecords();  // after the orders: a record may be for a model that comes in this tick
     feedLeads();
     feedPushes();
     ++tick_;
@@ -160,16 +127,26 @@ class Replay::Player final : public Clock {
     }
   }
 
+  /// Destroys the models that the servo has released, as a daemon does, so that their places are empty.
+  void destroyReleased() {
+    uint32_t place = 0;
+    while (replay_.world_->core().takeReleased(place)) replay_.world_->destroy(place);
+  }
+
+  /// True if a record is for a surface of a model, or for a model that has left, for which the servo ignores records.
+  bool isPossible(const ActivationRow& row) const {
+    const World& world = *replay_.world_;
+    if (row.model >= world.places() || row.order > 2 || row.probe >= replay_.arms_.size()) return false;
+    const auto& shape = world.shapes()[row.model];
+    return !shape || (shape->surfaces() != nullptr && row.surface < shape->surfaces()->surface_count);
+  }
+
   void feedRecords() {
     const RecordedStream& stream = *recorded_[kActivations];
-    const auto models = static_cast<uint32_t>(replay_.run_.scene.models.size());
     for (; activation_ < stream.rows(); ++activation_) {
       const auto row = at<ActivationRow>(stream.row(activation_), 0);
       if (row.tick > tick_) return;
-      const bool known = row.model < models && row.order <= 2 && row.probe < replay_.arms_.size() &&
-                         replay_.world_->shapes()[row.model]->surfaces() != nullptr &&
-                         row.surface < replay_.world_->shapes()[row.model]->surfaces()->surface_count;
-      if (!known) continue;  // a damaged row is ignored; the forces will differ
+      if (!isPossible(row)) continue;  // a damaged row is ignored; the forces will differ
       const hsp_near near{row.surface, row.probe, {row.u, row.v}, row.distance};
       replay_.world_->link().records.push({row.model, static_cast<link::ActivationRecord::Order>(row.order), near});
     }
@@ -193,6 +170,10 @@ class Replay::Player final : public Clock {
         order.push = newPushSlot(row.target, row.place);
       else if (order.kind == Order::Kind::kLead)
         order.slot = newSlot(row.param, row.target);
+      else if (order.kind == Order::Kind::kAdopt)
+        order.model = replay_.later_.adopt(row.target, *replay_.world_);
+      else if (order.kind == Order::Kind::kRelease)
+        replay_.world_->forget(row.target);
       replay_.loop_->post(order);
     }
   }
@@ -231,19 +212,6 @@ class Replay::Player final : public Clock {
       const auto found = pushes_.find({row.arm, row.place});
       if (found != pushes_.end()) found->second->put(row.push);
     }
-  }
-
-  /// Returns the first tick in which a model was added or removed. The replay ends there, because the recording does
-  /// not describe added models.
-  uint64_t endOfScene() const {
-    const RecordedStream& stream = *recorded_[kOrders];
-    for (uint64_t i = 0; i < stream.rows(); ++i) {
-      const auto row = at<OrderRow>(stream.row(i), 0);
-      if (row.kind == static_cast<uint32_t>(Order::Kind::kAdopt) ||
-          row.kind == static_cast<uint32_t>(Order::Kind::kRelease))
-        return row.tick;
-    }
-    return UINT64_MAX;
   }
 
   void compareRow(size_t stream, uint64_t row) {
@@ -285,6 +253,8 @@ class Replay::Player final : public Clock {
     if (stream != kContacts && stream != kPoses) return "";
     const auto model = at<uint32_t>(row, 8);
     const auto& models = replay_.run_.scene.models;
+    if (const RunModel* later = laterModel(replay_.run_.later, model, at<uint64_t>(row, 0)))
+      return " of model " + later->model.name;
     return model < models.size() ? " of model " + models[model].name : "";
   }
 
@@ -328,44 +298,65 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
                                                 const host::Services::Log& log) {
   std::unique_ptr<Replay> replay(new Replay(recording, std::move(run)));
   const scene::Scene& scene = replay->run_.scene;
-  WorldOptions options;
-  options.rate = replay->run_.facts.rate;
-  options.probe_count = static_cast<uint32_t>(scene.devices.size());
-  options.max_force = maxForceOf(scene, replay->run_.devices);
-  options.former_claims = replay->run_.facts.former_claims;
-  options.keep_disabled = true;
-  std::optional<SetupWatch> waiting(std::in_place, log);
-  auto world = World::build(scene, options, log);
-  waiting.reset();
-  if (!world) return Error{world.error()};
-  replay->world_ = std::move(*world);
-  for (size_t i = 0; i < scene.devices.size(); ++i) {
-    replay->playbacks_.push_back(std::make_unique<host::Playback>());
-    replay->playbacks_[i]->info = replay->run_.devices[i];
-    auto arm = Arm::open(
-        scene.devices[i], scene.servo,
-        {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get(), scene.clients,
-         replay->run_.facts.found_pressed, replay->run_.facts.full_when_slow, replay->run_.facts.former_passivity},
-        log);
-    if (!arm) return Error{arm.error()};
-    replay->arms_.push_back(std::move(*arm));
-  }
-  const auto streams = flightStreams(scene, replay->arms_, options.rate, kKeptSeconds, scene.models.size());
+  const RunFacts& facts = replay->run_.facts;
+  if (auto built = replay->buildWorld(log); !built) return Error{built.error()};
+  if (auto opened = replay->openArms(log); !opened) return Error{opened.error()};
+  const size_t models = scene.models.size() + replay->run_.later.size();
+  const auto streams = flightStreams(scene, replay->arms_, facts.rate, kKeptSeconds, models);
   if (const std::string missing = missingIn(recording, replay->run_, streams); !missing.empty())
     return Error{"the recording " + missing};
+  replay->buildLater(log);
   auto ring = record::FlightRing::create(streams, {});
   if (!ring) return Error{ring.error()};
-  replay->telemetry_ = std::make_unique<Telemetry>(scene, options.rate);
-  replay->telemetry_->attach(std::make_unique<Flight>(std::move(*ring), replay->arms_, scene.models.size()));
-  if (replay->run_.facts.counts_unfelt) replay->telemetry_->flight()->countUnfelt();
+  const uint32_t places = replay->world_->places();
+  replay->telemetry_ = std::make_unique<Telemetry>(scene, facts.rate, places);
+  replay->telemetry_->attach(std::make_unique<Flight>(std::move(*ring), replay->arms_, places));
+  if (facts.counts_unfelt) replay->telemetry_->flight()->countUnfelt();
   replay->player_ = std::make_unique<Player>(*replay, replay->telemetry_->flight()->ring());
   LoopSettings settings;
-  settings.period_ns = replay->run_.facts.period_ns;
-  settings.ticks = replay->run_.facts.ticks;
+  settings.period_ns = facts.period_ns;
+  settings.ticks = facts.ticks;
   settings.paced = replay->paced_ = pacingArm(scene.servo, replay->arms_) != nullptr;
   replay->loop_ = std::make_unique<Loop>(replay->world_->core(), replay->world_->lockstep(), replay->arms_,
                                          *replay->player_, settings, *replay->telemetry_);
   return replay;
+}
+
+Result<void> Replay::buildWorld(const host::Services::Log& log) {
+  const scene::Scene& scene = run_.scene;
+  WorldOptions options;
+  options.rate = run_.facts.rate;
+  options.probe_count = static_cast<uint32_t>(scene.devices.size());
+  options.max_force = maxForceOf(scene, run_.devices);
+  options.former_claims = run_.facts.former_claims;
+  options.keep_disabled = true;
+  options.spare_models = LaterModels::placesFor(run_.later, scene.models.size());
+  const SetupWatch waiting(log);
+  auto world = World::build(scene, options, log);
+  if (!world) return Error{world.error()};
+  world_ = std::move(*world);
+  return {};
+}
+
+Result<void> Replay::openArms(const host::Services::Log& log) {
+  const scene::Scene& scene = run_.scene;
+  const RunFacts& facts = run_.facts;
+  for (size_t i = 0; i < scene.devices.size(); ++i) {
+    playbacks_.push_back(std::make_unique<host::Playback>());
+    playbacks_[i]->info = run_.devices[i];
+    auto arm = Arm::open(scene.devices[i], scene.servo,
+                         {facts.rate, world_->needsVelocity(), playbacks_[i].get(), scene.clients, facts.found_pressed,
+                          facts.full_when_slow, facts.former_passivity},
+                         log);
+    if (!arm) return Error{arm.error()};
+    arms_.push_back(std::move(*arm));
+  }
+  return {};
+}
+
+void Replay::buildLater(const host::Services::Log& log) {
+  const SetupWatch waiting(log);
+  later_.build(*recording_.stream("orders"), run_.later, *world_, log);
 }
 
 ReplayOutcome Replay::run() {

@@ -12,6 +12,7 @@
 #include "record/recording.hpp"
 #include "servo/loop/loop.hpp"
 #include "session/replay/about.hpp"
+#include "session/replay/later_models.hpp"
 #include "session/telemetry/telemetry.hpp"
 #include "world/world.hpp"
 
@@ -34,8 +35,8 @@ struct ReplayOutcome {
 
 class Replay {
  public:
-  /// [main] Builds the world of the recording. @param run the result of readAbout(), which the caller may have changed
-  /// to see the effect
+  /// [main] Builds the world of the recording, and the models that came later. @param run the result of readAbout(),
+  /// with `later`; the caller may have changed it to see the effect
   static Result<std::unique_ptr<Replay>> prepare(const record::Recording& recording, RecordedRun run,
                                                  const host::Services::Log& log);
   ~Replay();
@@ -45,12 +46,16 @@ class Replay {
  private:
   class Player;
   Replay(const record::Recording& recording, RecordedRun run);
+  Result<void> buildWorld(const host::Services::Log& log);
+  Result<void> openArms(const host::Services::Log& log);
+  void buildLater(const host::Services::Log& log);
 
   const record::Recording& recording_;
   RecordedRun run_;
   std::vector<std::unique_ptr<host::Playback>> playbacks_;
   bool paced_ = false;  ///< true if the samples of an arm drove the recorded run
   std::unique_ptr<World> world_;
+  LaterModels later_;
   Arms arms_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<Player> player_;

@@ -5,15 +5,15 @@
 #include <map>
 #include <set>
 
-#include "record/scene_json.hpp"
 #include "servo/core/order.hpp"
+#include "session/replay/model_description.hpp"
 
 namespace hapticd::servo {
 
 namespace {
 
 constexpr double kMostNumbers = 65536;                ///< a larger number of a model is damage
-constexpr size_t kMostDescription = size_t{1} << 16;  ///< [bytes] the daemon writes at most a tenth of this
+constexpr size_t kMostDescription = size_t{1} << 16;  ///< [bytes] the daemon writes at most half of this
 
 constexpr auto kAdopted = static_cast<uint32_t>(Order::Kind::kAdopt);
 
@@ -27,10 +27,20 @@ bool isNumber(double number) {
   return number >= 0 && number < kMostNumbers;
 }
 
-scene::Model nameless(uint32_t number) {
-  scene::Model model;
-  model.name = "model " + std::to_string(number);
-  return model;
+RunModel nameless(uint32_t number, uint64_t since, const char* lack) {
+  RunModel one{number, since, {}, {}, lack};
+  one.model.name = "model " + std::to_string(number);
+  return one;
+}
+
+/// The model that a text of the daemon describes.
+RunModel described(uint32_t number, uint64_t since, const std::string& text) {
+  auto description = readModelDescription(text);
+  if (!description) return nameless(number, since, "its description in the stream marks is damaged");
+  RunModel one{number, since, std::move(description->model), std::move(description->files), ""};
+  if (!description->whole)
+    one.lack = "the recording describes it only in part, because its path and parameters are long";
+  return one;
 }
 
 /// The columns of some names; empty if one is missing.
@@ -46,9 +56,10 @@ std::vector<const record::Column*> columnsOf(const record::RecordedStream& strea
 
 RunModels::RunModels(const record::Recording& recording, const scene::Scene& scene) {
   for (const scene::Model& model : scene.models) models_.push_back({static_cast<uint32_t>(models_.size()), 0, model});
+  of_scene_ = static_cast<std::ptrdiff_t>(models_.size());
   readDescriptions(recording.stream("marks"));
-  addNameless(recording.stream("orders"), scene.models.size());
-  std::stable_sort(models_.begin() + static_cast<std::ptrdiff_t>(scene.models.size()), models_.end(),
+  addNameless(recording.stream("orders"));
+  std::stable_sort(models_.begin() + of_scene_, models_.end(),
                    [](const RunModel& a, const RunModel& b) { return a.since < b.since; });
   for (size_t i = 0; i < models_.size(); ++i) {
     const uint32_t number = models_[i].number;
@@ -68,29 +79,30 @@ void RunModels::readDescriptions(const record::RecordedStream* marks) {
     if (!isNumber(number)) continue;  // a mark of a program
     if (text.size() < kMostDescription) text += marks->text(row, *columns[3]);
     if (marks->number(row, *columns[2]) > 0) continue;
-    const auto place = static_cast<uint32_t>(number);
-    auto model = record::modelFromJson(text);
+    models_.push_back(described(static_cast<uint32_t>(number), wholeTick(marks->number(row, *columns[0])), text));
     text.clear();
-    models_.push_back({place, wholeTick(marks->number(row, *columns[0])), model ? std::move(*model) : nameless(place)});
   }
 }
 
 /// Adds a model without a name for each one that came without a description, so that it does not get the name of the
 /// model that had its number before.
-void RunModels::addNameless(const record::RecordedStream* orders, size_t of_scene) {
+void RunModels::addNameless(const record::RecordedStream* orders) {
   if (orders == nullptr) return;
   const auto columns = columnsOf(*orders, {"tick", "kind", "target"});
   if (columns.empty()) return;
-  std::map<uint32_t, std::set<uint64_t>> described;  // ticks of the descriptions that no order has used up
-  for (size_t i = of_scene; i < models_.size(); ++i) described[models_[i].number].insert(models_[i].since);
+  std::map<uint32_t, std::set<uint64_t>> unused;  // ticks of the descriptions that no order has used up
+  for (auto one = models_.begin() + of_scene_; one != models_.end(); ++one) unused[one->number].insert(one->since);
   for (uint64_t row = 0; row < orders->rows(); ++row) {
     const double number = orders->number(row, *columns[2]);
     if (orders->number(row, *columns[1]) != double{kAdopted} || !isNumber(number)) continue;
     const auto place = static_cast<uint32_t>(number);
     const uint64_t tick = wholeTick(orders->number(row, *columns[0]));
-    std::set<uint64_t>& ticks = described[place];
+    std::set<uint64_t>& ticks = unused[place];
     const auto later = ticks.upper_bound(tick);
-    if (later == ticks.begin()) models_.push_back({place, tick, nameless(place)});
+    if (later == ticks.begin())
+      models_.push_back(nameless(place, tick,
+                                 "the recording does not describe it: an older hapticd made it, or its "
+                                 "rows in the stream marks are lost"));
     ticks.erase(ticks.begin(), later);
   }
 }
@@ -106,7 +118,7 @@ size_t RunModels::find(double number, double tick) const {
 std::string RunModels::nameOf(double number, double tick) const {
   const size_t place = find(number, tick);
   if (place != kNone) return models_[place].model.name;
-  return isNumber(number) ? nameless(static_cast<uint32_t>(number)).name : "a model";
+  return isNumber(number) ? nameless(static_cast<uint32_t>(number), 0, "").model.name : "a model";
 }
 
 }  // namespace hapticd::servo

@@ -8,14 +8,17 @@
 
 #include "description/scene.hpp"
 #include "record/recording.hpp"
+#include "session/replay/fingerprint.hpp"
 
 namespace hapticd::servo {
 
 /// A model of a run.
 struct RunModel {
-  uint32_t number = 0;  ///< in the columns `model`
-  uint64_t since = 0;   ///< first tick in which the number means this model
-  scene::Model model;   ///< called "model 7" if the recording does not say more; a model that came later has no path
+  uint32_t number = 0;                  ///< in the columns `model`
+  uint64_t since = 0;                   ///< first tick in which the number means this model
+  scene::Model model;                   ///< called "model 7" if the recording does not say more
+  std::vector<Fingerprint> files = {};  ///< of a model that came later; those of the scene are in RecordedRun
+  std::string lack = {};                ///< why a replay cannot build a model that came later; "" if it can
 };
 
 class RunModels {
@@ -28,6 +31,8 @@ class RunModels {
 
   /// [main] The models of the scene by their numbers, then those that came later, in the order in which they came.
   const std::vector<RunModel>& all() const { return models_; }
+  /// [main] The models that came later, in the order in which they came.
+  std::vector<RunModel> later() const { return {models_.begin() + of_scene_, models_.end()}; }
 
   /// [main] Returns the place in all() of the model that has this number in this tick; kNone if no model is known.
   size_t find(double number, double tick) const;
@@ -37,9 +42,10 @@ class RunModels {
 
  private:
   void readDescriptions(const record::RecordedStream* marks);
-  void addNameless(const record::RecordedStream* orders, size_t of_scene);
+  void addNameless(const record::RecordedStream* orders);
 
   std::vector<RunModel> models_;
+  std::ptrdiff_t of_scene_ = 0;                 ///< number of models of the scene
   std::vector<std::vector<size_t>> of_number_;  ///< places in models_, in the order of ticks
 };
 

@@ -13,9 +13,9 @@
 #include "host/catalog.hpp"
 #include "host/file_stamp.hpp"
 #include "host/replaced_library.hpp"
-#include "record/scene_json.hpp"
 #include "scene/load.hpp"
 #include "session/messages/setup_watch.hpp"
+#include "session/replay/model_description.hpp"
 #include "session/requests/foreign_files.hpp"
 #include "session/requests/kept_settings.hpp"
 #include "session/requests/request_handler.hpp"
@@ -27,6 +27,9 @@ namespace hapticd::servo {
 namespace {
 
 using control::Request;
+
+/// [bytes] A description of a model has at most kMostMarks rows of this size in the stream `marks`.
+constexpr size_t kMarkBytes = Order::kTextBytes - 1, kMostMarks = 256;
 
 /// Adds `notes` to the answer: which added models may not be what the user expects, because their plugin's file has
 /// changed since it was loaded.
@@ -166,19 +169,13 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
         fmt::format("the run has room for {} more models, but {} were given\n  fix: remove models first, or add fewer",
                     empty.size(), models.size()));
   if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
-  std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
-  const SetupWatch waiting(log_, 5, "the other models are felt, but no request is answered until it returns");
-  for (const scene::Model& model : models) {
-    auto shape = runner_.world().prepare(passed_ ? withPaths(model, *passed_) : model, log_);
-    if (!shape) return Error{shape.error()};
-    shapes.push_back(std::move(*shape));
-  }
-  came_stiffness_.clear();
-  for (const auto& shape : shapes) came_stiffness_.push_back(shape->report().max_stiffness);
+  auto coming = prepare(models);
+  if (!coming) return Error{coming.error()};
   for (size_t i = 0; i < models.size(); ++i) {
     const uint32_t place = empty[i];
-    if (auto told = describe(place, models[i]); !told) return told;
-    prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
+    auto& shape = (*coming)[i].shape;
+    if (auto told = describe(place, (*coming)[i].description); !told) return told;
+    prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shape, models[i])));
     runner_.nameModel(place, models[i].name, models[i].plugin, models[i].library.string());
     Order order;
     order.kind = Order::Kind::kAdopt;
@@ -187,24 +184,33 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     const auto given = post(order);
     places_[place] = {models[i], true, models[i].enabled};
     // The shape is kept even if the servo did not obey in time, because the servo may obey later.
-    runner_.world().store(place, std::move(shapes[i]), models[i]);
+    runner_.world().store(place, std::move(shape), models[i]);
     if (!given) return given;
     prepared_.pop_back();
   }
   return {};
 }
 
-/// Writes into the stream `marks` what comes to this place, so that a recording names its models and joints. The text
-/// is cut into rows. A long one gets no parameters, and none has a path, which a reader of names does not need.
-Result<void> RequestHandler::describe(uint32_t place, const scene::Model& model) {
-  constexpr size_t kBytes = Order::kTextBytes - 1, kMostRows = 64, kAtOnce = 16;
-  scene::Model short_model = model;
-  short_model.path.clear();
-  std::string text = record::modelToJson(short_model);
-  if (text.size() > kBytes * kMostRows) {
-    short_model.parameters.clear();
-    text = record::modelToJson(short_model);
+/// Builds these models and describes them, which may take long.
+Result<std::vector<RequestHandler::Coming>> RequestHandler::prepare(const std::vector<scene::Model>& models) {
+  std::vector<Coming> coming;
+  const SetupWatch waiting(log_, 5, "the other models are felt, but no request is answered until it returns");
+  for (const scene::Model& model : models) {
+    const scene::Model readable = passed_ ? withPaths(model, *passed_) : model;
+    auto shape = runner_.world().prepare(readable, log_);
+    if (!shape) return Error{shape.error()};
+    std::string description = describeModel(model, readable, (*shape)->description(), kMarkBytes * kMostMarks);
+    coming.push_back({std::move(*shape), std::move(description)});
   }
+  came_stiffness_.clear();
+  for (const Coming& one : coming) came_stiffness_.push_back(one.shape->report().max_stiffness);
+  return coming;
+}
+
+/// Writes into the stream `marks` what comes to this place, so that a recording names its models and joints, and a
+/// replay can build the model. The text is cut into rows.
+Result<void> RequestHandler::describe(uint32_t place, const std::string& text) {
+  constexpr size_t kBytes = kMarkBytes, kAtOnce = 16;
   std::vector<Order> orders((text.size() + kBytes - 1) / kBytes);
   for (size_t i = 0; i < orders.size(); ++i) {
     orders[i].kind = Order::Kind::kMark;

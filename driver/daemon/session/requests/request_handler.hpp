@@ -102,7 +102,13 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
-  Result<void> describe(uint32_t place, const scene::Model& model);
+  /// A model that is ready for the servo, and its description for recordings.
+  struct Coming {
+    std::unique_ptr<host::ShapeInstance> shape;
+    std::string description;
+  };
+  Result<std::vector<Coming>> prepare(const std::vector<scene::Model>& models);
+  Result<void> describe(uint32_t place, const std::string& text);
   void addWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
                    nlohmann::ordered_json& json) const;
   nlohmann::ordered_json cameAnswer(const std::vector<scene::Model>& models);

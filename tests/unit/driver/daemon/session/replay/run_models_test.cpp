@@ -14,6 +14,7 @@
 #include "record/recording_file.hpp"
 #include "record/scene_json.hpp"
 #include "servo/core/order.hpp"
+#include "session/replay/model_description.hpp"
 #include "session/telemetry/flight.hpp"
 
 namespace hapticd::servo {
@@ -121,6 +122,24 @@ TEST_F(RunModelsTest, AModelWithoutADescriptionHasNotTheNameOfTheOneBefore) {
   EXPECT_EQ(models.nameOf(0, 45), "model 0");
   EXPECT_EQ(models.nameOf(0, 51), "new");
   EXPECT_EQ(models.nameOf(0, 60), "model 0");
+}
+
+/// What a replay cannot build says why.
+TEST_F(RunModelsTest, AModelThatCannotBeBuiltHasAReason) {
+  hsp_class plugin{};
+  plugin.id = plugin.version = "";
+  const std::string whole = describeModel(modelNamed("whole"), modelNamed("whole"), plugin, 10'000);
+  std::vector<MarkRow> marks = described(50, 0, whole);
+  for (const MarkRow& row : described(60, 1, jsonOf("part"))) marks.push_back(row);
+  marks.push_back(markOf(70, 2, 0, "{"));
+  const std::vector<RunModel> later =
+      of(marks, {{50, kCame, 0}, {61, kCame, 1}, {71, kCame, 2}, {80, kCame, 3}}).later();
+  ASSERT_EQ(later.size(), 4u);
+  EXPECT_EQ(later[0].lack, "");
+  EXPECT_EQ(later[0].files.size(), 1u);
+  EXPECT_NE(later[1].lack.find("only in part"), std::string::npos) << later[1].lack;
+  EXPECT_NE(later[2].lack.find("damaged"), std::string::npos) << later[2].lack;
+  EXPECT_NE(later[3].lack.find("does not describe it"), std::string::npos) << later[3].lack;
 }
 
 TEST_F(RunModelsTest, RecordingsFromBeforeDescriptionsAreRead) {

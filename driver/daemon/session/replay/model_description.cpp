@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "session/replay/model_description.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "document/json_text.hpp"
+#include "record/scene_json.hpp"
+#include "session/replay/former_defaults.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json filesJson(const scene::Model& model, const scene::Model& readable) {
+  const std::vector<std::string> names = filesOf(model), paths = filesOf(readable);
+  Json list = Json::array();
+  for (size_t i = 0; i < names.size(); ++i) list.push_back({{"path", names[i]}, {"hash", fingerprint(paths[i])}});
+  return list;
+}
+
+}  // namespace
+
+std::string describeModel(const scene::Model& model, const scene::Model& readable, const hsp_class& plugin,
+                          size_t most) {
+  Json json = document::parseJsonOrThrow(record::modelToJson(model));
+  json["id"] = plugin.id;
+  json["version"] = plugin.version;
+  json["files"] = filesJson(model, readable);
+  const auto text = [&] { return json.dump(-1, ' ', true, Json::error_handler_t::replace); };
+  if (text().size() <= most) return text();
+  json.erase("files");
+  json["path"] = Json::array();
+  if (text().size() > most) json["parameters"] = Json::array();
+  return text();
+}
+
+Result<ModelDescription> readModelDescription(const std::string& json_text) {
+  auto model = record::modelFromJson(json_text);
+  if (!model) return Error{model.error()};
+  ModelDescription description{std::move(*model), {}, false};
+  try {
+    const Json json = document::parseJsonOrThrow(json_text);
+    description.whole = json.contains("files");
+    if (!description.whole) return description;
+    for (const Json& file : json.at("files")) description.files.push_back({file.at("path"), file.at("hash")});
+    useFormerDefaults(description.model, json.at("id"), json.at("version"));
+    return description;
+  } catch (const std::exception& error) {
+    return Error{std::string("the description of a model cannot be read: ") + error.what()};
+  }
+}
+
+}  // namespace hapticd::servo
