@@ -34,6 +34,8 @@ const kEvents = {
   refused: {sort: 'fault', text: (e) => `${e.value} records of the program that leads it were refused so far`},
   stalled: {sort: 'fault', text: (e) => `no tick came for ${short(e.value)} s`},
   end_stop: {sort: 'contact', text: (e) => `came to its ${['', 'lowest', 'highest'][e.code] ?? ''} end`},
+  mark: {sort: 'mark', text: () => 'marked'}, // the stream `marks` has its text
+  quarantined: {sort: 'fault', text: () => 'models were left out, because their plugin ended an earlier run'},
 };
 
 export class Events {
