@@ -51,6 +51,14 @@ def can_lock_memory():
     return capabilities >> cap_ipc_lock & 1 == 1 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
 
 
+def write(folder, name, content):
+    """Writes a file of text or bytes. Returns its path."""
+    file = os.path.join(folder, name)
+    with open(file, "wb") as out:
+        out.write(content if isinstance(content, bytes) else content.encode())
+    return file
+
+
 class Done(NamedTuple):
     """How a program ended, and what it printed."""
     returncode: int
