@@ -26,8 +26,6 @@ using brep::kNone;
 using brep::Part;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
-                                         "B-spline", "extrusion", "revolution", "offset"};
 constexpr const char* kEdgeNames[] = {"unclassified", "smooth", "convex",       "concave",
                                       "mixed",        "free",   "non-manifold", "pole"};
 constexpr const char* kBodyNames[] = {"solid", "shell", "sheet", "mesh"};
@@ -85,7 +83,7 @@ Json instancesOf(const Part& part) {
 Json describe(const Part& part, std::size_t bytes) {
   std::map<std::string, std::size_t> faces, edges;
   for (const brep::Face& face : part.faces)
-    ++faces[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
+    ++faces[brep::kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
   for (const brep::Edge& edge : part.edges) ++edges[kEdgeNames[static_cast<std::size_t>(edge.kind)]];
   Json losses = Json::array();
   for (const brep::Loss& loss : part.losses)

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -13,9 +14,6 @@ namespace {
 using brep::kNone;
 using brep::Part;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
-                                         "B-spline", "extrusion", "revolution", "offset"};
 
 struct Counts {
   std::size_t placed = 0, faces = 0;  ///< number of bodies that have an instance, and of their faces
@@ -30,7 +28,7 @@ Counts countsOf(const Part& part) {
     counts.faces += part.bodies[instance.body].face_count;
   }
   for (const brep::Face& face : part.faces)
-    ++counts.kinds[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
+    ++counts.kinds[brep::kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
   return counts;
 }
 
