@@ -10,6 +10,7 @@
 
 #include "base/counted.hpp"
 #include "base/regular_file.hpp"
+#include "base/short_number.hpp"
 #include "cli/part/feature.hpp"
 #include "cli/part/poses.hpp"
 #include "cli/support/command.hpp"
@@ -174,11 +175,8 @@ void printBodies(const Json& info) {
 /// [mm] Returns three lengths as text. @param digits the box around a curved body is up to some 0.1 % too large
 std::string inMm(const Json& metres, const char* between, int digits) {
   std::string text;
-  for (const Json& length : metres) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.*g", digits, std::round(1e9 * length.get<double>()) * 1e-6 + 0.0);
-    text += (text.empty() ? "" : between) + std::string(number);
-  }
+  for (const Json& length : metres)
+    text += (text.empty() ? "" : between) + withDigits(std::round(1e9 * length.get<double>()) * 1e-6 + 0.0, digits);
   return text;
 }
 
@@ -200,18 +198,14 @@ void printInstances(const Json& info) {
 
 std::string sizeOf(const Json& loss) {
   const double size = loss["size_m"].get<double>();
-  char text[32] = "";
-  if (size > 0) std::snprintf(text, sizeof text, " (%.3g m)", size);
-  return text;
+  return size > 0 ? " (" + withDigits(size, 3) + " m)" : "";
 }
 
 /// Returns the file of a part, its unit, and how the import placed it.
 std::string sourceOf(const Json& source) {
   std::string text = source["file"].get<std::string>() + ", unit " + source["unit"].get<std::string>();
   if (source["unit_assumed"].get<bool>()) text += " (assumed)";
-  char scaled[40];
-  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source["scale"].get<double>());
-  if (source["scale"].get<double>() != 1) text += scaled;
+  if (const auto scale = source["scale"].get<double>(); scale != 1) text += ", scaled by " + withDigits(scale, 6);
   const std::string placed = source["placed"].get<std::string>();
   return text + (placed.empty() ? "" : ", " + placed);
 }

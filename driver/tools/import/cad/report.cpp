@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.hpp"
+#include "base/short_number.hpp"
 #include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
@@ -32,12 +33,6 @@ Counts countsOf(const Part& part) {
   return counts;
 }
 
-std::string metresText(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
-}
-
 /// Returns the size of the part, such as "80 x 60 x 20 mm, ".
 std::string sizeText(const Report& report) {
   const Eigen::AlignedBox3d& box = report.measures.box;
@@ -57,9 +52,7 @@ Json sizeJson(const Report& report) {
 
 std::string unitText(const brep::Source& source) {
   std::string text = "unit " + source.unit + (source.unit_assumed ? " (assumed)" : "");
-  char scaled[40];
-  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source.scale);
-  if (source.scale != 1) text += scaled;
+  if (source.scale != 1) text += ", scaled by " + withDigits(source.scale, 6);
   return text + (source.placed.empty() ? "" : ", " + source.placed);
 }
 
@@ -105,7 +98,7 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   for (const auto& said : {stepsOf(report), part.warnings, report.measures.notes})
     for (const std::string& line : said) add(line);
   for (const brep::Loss& loss : part.losses)
-    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + metresText(loss.size) + ")" : ""));
+    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + withDigits(loss.size, 3) + " m)" : ""));
   if (lines > kMostLines)
     text += "  and " + std::to_string(lines - kMostLines) + " more lines: --json lists them all\n";
   if (part.losses.empty()) text += "  nothing was lost\n";
