@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Properties of a simulated arm. Each list has one number for each joint.
 #pragma once
-#include <cstdint>
 
 #include "kinematics/arm.hpp"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 
 #include "base/nearest_word.hpp"
 #include "base/passed_files.hpp"

@@ -2,8 +2,6 @@
 #include "document/repair.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <optional>
 #include <set>
 
 namespace hapticd::document {

@@ -95,30 +95,24 @@ std::vector<std::string> texts(std::span<const std::string_view> words);
 
 template <auto M>
 constexpr Key real(const char* name, Range range, const char* def, const char* doc) {
-  return {name,
-          Type::kReal,
-          doc,
-          def,
-          false,
-          range,
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kReal,
+          .doc = doc,
+          .def = def,
+          .range = range,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             if (const auto value = in.number(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
 template <auto M>
 constexpr Key integer(const char* name, Range range, const char* def, const char* doc) {
-  return {name,
-          Type::kInteger,
-          doc,
-          def,
-          false,
-          range,
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kInteger,
+          .doc = doc,
+          .def = def,
+          .range = range,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             using T = typename detail::ValueType<std::remove_cvref_t<decltype(detail::member<M>(object))>>::Type;
             if (const auto value = in.whole(node, path, key.range)) detail::member<M>(object) = static_cast<T>(*value);
           }};
@@ -126,15 +120,12 @@ constexpr Key integer(const char* name, Range range, const char* def, const char
 
 template <auto M>
 constexpr Key boolean(const char* name, const char* def, const char* doc) {
-  return {name,
-          Type::kBool,
-          doc,
-          def,
-          false,
-          {0, 1},
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+  return {.name = name,
+          .type = Type::kBool,
+          .doc = doc,
+          .def = def,
+          .range = {0, 1},
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
             if (const auto value = in.boolean(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
@@ -143,15 +134,12 @@ constexpr Key boolean(const char* name, const char* def, const char* doc) {
 /// choices.
 template <auto M>
 constexpr Key choice(const char* name, std::span<const std::string_view> choices, const char* def, const char* doc) {
-  return {name,
-          Type::kChoice,
-          doc,
-          def,
-          false,
-          {},
-          choices,
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kChoice,
+          .doc = doc,
+          .def = def,
+          .choices = choices,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             using T = std::remove_cvref_t<decltype(detail::member<M>(object))>;
             const auto index = in.choice(node, path, detail::texts(key.choices));
             if (!index) return;
@@ -164,60 +152,44 @@ constexpr Key choice(const char* name, std::span<const std::string_view> choices
 
 template <auto M>
 constexpr Key name(const char* name, const char* doc) {
-  return {name,
-          Type::kName,
-          doc,
-          nullptr,
-          false,
-          {},
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+  return {.name = name,
+          .type = Type::kName,
+          .doc = doc,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
             if (const auto value = in.name(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
 template <auto M>
 constexpr Key file(const char* name, const char* doc) {
-  return {name,
-          Type::kFile,
-          doc,
-          nullptr,
-          false,
-          {},
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+  return {.name = name,
+          .type = Type::kFile,
+          .doc = doc,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
             if (const auto value = in.existingFile(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
 template <auto M>
 constexpr Key vector3(const char* name, Range range, const char* def, const char* doc) {
-  return {name,
-          Type::kVector3,
-          doc,
-          def,
-          false,
-          range,
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kVector3,
+          .doc = doc,
+          .def = def,
+          .range = range,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             if (const auto value = in.vector3(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
 template <auto M>
 constexpr Key quaternion(const char* name, const char* def, const char* doc) {
-  return {name,
-          Type::kQuaternion,
-          doc,
-          def,
-          false,
-          {-1, 1},
-          {},
-          nullptr,
-          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+  return {.name = name,
+          .type = Type::kQuaternion,
+          .doc = doc,
+          .def = def,
+          .range = {-1, 1},
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
             if (const auto value = in.quaternion(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
@@ -226,15 +198,11 @@ constexpr Key quaternion(const char* name, const char* def, const char* doc) {
 /// contains the mapping.
 template <auto M>
 constexpr Key object(const char* name, const Table& table, const char* doc) {
-  return {name,
-          Type::kObject,
-          doc,
-          nullptr,
-          false,
-          {},
-          {},
-          &table,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kObject,
+          .doc = doc,
+          .table = &table,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             auto& target = detail::member<M>(object);
             if constexpr (requires { target.emplace(); })
               in.object(node, path, *key.table, &target.emplace());
@@ -247,15 +215,12 @@ constexpr Key object(const char* name, const Table& table, const char* doc) {
 /// with its line and column.
 template <auto M>
 constexpr Key list(const char* name, const Table& table, Range count, const char* doc) {
-  return {name,
-          Type::kList,
-          doc,
-          nullptr,
-          false,
-          count,
-          {},
-          &table,
-          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+  return {.name = name,
+          .type = Type::kList,
+          .doc = doc,
+          .range = count,
+          .table = &table,
+          .store = [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             auto& target = detail::member<M>(object);
             const auto most = static_cast<size_t>(key.range.max);
             const bool is_right = node.isSequence() && node.items.size() <= most;
@@ -291,18 +256,12 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
 /// longer than the object.
 template <auto M>
 constexpr Key any(const char* name, const char* shape, const char* doc) {
-  return {name,
-          Type::kAny,
-          doc,
-          nullptr,
-          false,
-          {},
-          {},
-          nullptr,
-          [](Reader&, const Node& node, const std::string&, const Key&, void* object) {
-            detail::member<M>(object) = &node;
-          },
-          shape};
+  return {.name = name,
+          .type = Type::kAny,
+          .doc = doc,
+          .store = [](Reader&, const Node& node, const std::string&, const Key&,
+                      void* object) { detail::member<M>(object) = &node; },
+          .shape = shape};
 }
 
 }  // namespace hapticd::document

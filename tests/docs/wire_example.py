@@ -7,19 +7,14 @@ Usage: wire_example.py HAPTICD SOURCE_DIR       exit 1 when one is off
 import csv
 import io
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SOURCE = sys.argv[1:3]
-
-
-def run(*arguments, given=""):
-    done = subprocess.run([HAPTICD, *arguments], input=given, capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr
+run = program(HAPTICD)
 
 
 def example():
@@ -55,7 +50,7 @@ with tempfile.TemporaryDirectory() as folder:
     check("the example passes hapticd check", code == 0, out + err)
 
     # 126 and 125 raw units are the marks 0x7e and 0x7d.
-    code, out, err = run("device", "encode", arm, given="0.00252,0.0025,-0.5\n0.1,0.2,0.3\n")
+    code, out, err = run("device", "encode", arm, input="0.00252,0.0025,-0.5\n0.1,0.2,0.3\n")
     lines = out.splitlines()
     check("torques are encoded", code == 0 and len(lines) == 2, out + err)
     for line in lines:
@@ -66,7 +61,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     truth = [(0.5, 0.4, -0.5), (0.126, 0.125, 0.1), (-1.5, 1.4, 0.3), (0.000126, 0.032126, 0)]
     code, out, err = run("device", "encode", "--from-arm", "--raw", arm, "-o", os.path.join(folder, "cap.bin"),
-                         given="".join("%g,%g,%g\n" % row for row in truth))
+                         input="".join("%g,%g,%g\n" % row for row in truth))
     check("what the arm would send is written", code == 0, err)
     code, out, err = run("device", "decode", arm, os.path.join(folder, "cap.bin"))
     told = [[float(row[f"position{j}"]) for j in (1, 2, 3)] for row in csv.DictReader(io.StringIO(out)) if row["verdict"] == "good"]

@@ -7,7 +7,7 @@ import socket
 import subprocess
 
 import hapticd
-from e2e import check, until
+from e2e import check, program, until
 
 
 class Daemon:
@@ -55,8 +55,7 @@ class Daemon:
 
     def run(self, *arguments, given=""):
         """Runs hapticd beside the daemon: exit code, standard output and standard error. @param given its standard input"""
-        done = subprocess.run([self.hapticd, *arguments], env=self.environment, input=given, capture_output=True, text=True, timeout=120)
-        return done.returncode, done.stdout, done.stderr
+        return program(self.hapticd, self.environment)(*arguments, input=given)
 
     def ctl(self, *arguments, given=""):
         return self.run("ctl", "--name", self.name, *arguments, given=given)

@@ -5,6 +5,7 @@ import resource
 import subprocess
 import sys
 import time
+from typing import NamedTuple
 
 LONG = "HAPTICD_LONG" in os.environ  # set by `tests/run long`: cover all of a sweep, and not only a representative part
 failures = 0
@@ -50,12 +51,27 @@ def can_lock_memory():
     return capabilities >> cap_ipc_lock & 1 == 1 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
 
 
+def write(folder, name, content):
+    """Writes a file of text or bytes. Returns its path."""
+    file = os.path.join(folder, name)
+    with open(file, "wb") as out:
+        out.write(content if isinstance(content, bytes) else content.encode())
+    return file
+
+
+class Done(NamedTuple):
+    """How a program ended, and what it printed."""
+    returncode: int
+    stdout: str
+    stderr: str
+
+
 def program(path, environment=None, timeout=300, together=False):
-    """Returns a function that runs the program with the given arguments. It returns the exit code, standard output and standard error;
-    with `together` the exit code and both outputs as one text."""
-    def run(*arguments):
-        done = subprocess.run([path, *arguments], env=environment, capture_output=True, text=True, timeout=timeout)
+    """Returns a function that runs the program with the given arguments, and with options of subprocess.run() such as cwd or input. It
+    returns exit code, standard output and standard error, as a Done; with `together` the exit code and both outputs as one text."""
+    def run(*arguments, **options):
+        done = subprocess.run([path, *arguments], env=environment, capture_output=True, text=True, timeout=timeout, **options)
         if together:
             return done.returncode, done.stdout + done.stderr
-        return done.returncode, done.stdout, done.stderr
+        return Done(done.returncode, done.stdout, done.stderr)
     return run

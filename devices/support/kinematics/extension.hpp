@@ -3,7 +3,6 @@
 /// include this header: the kinematics library itself does not depend on the ABI.
 #pragma once
 #include <array>
-#include <cmath>
 
 #include "hapticd/device.h"
 #include "hapticd/device_links.h"

@@ -2,7 +2,6 @@
 /// The device class for an arm that exchanges reports over a bus (USB, VME): kinematics, samples, calibration.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "base/clock.hpp"
 #include "codec/framer.hpp"

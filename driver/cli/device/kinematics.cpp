@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/short_number.hpp"
 #include "cli/device/content.hpp"
 #include "cli/device/file.hpp"
 #include "cli/device/joint_angles.hpp"
@@ -137,11 +138,7 @@ class Table {
     }
   }
   void add(const double* values, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%s%.17g", line_.empty() ? "" : ",", values[i]);
-      line_ += text;
-    }
+    for (size_t i = 0; i < count; ++i) line_ += (line_.empty() ? "" : ",") + withDigits(values[i], 17);
   }
   std::FILE* out_;
   const hdv_ext_kinematics& kinematics_;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/import/file_content.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
 
+#include "base/file_beginning.hpp"
 #include "base/file_ending.hpp"
-#include "base/regular_file.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -37,14 +35,9 @@ constexpr Kind kKinds[] = {
 };
 
 std::string firstBytes(const std::string& file) {
-  const auto handle = openRegular(file);
-  if (!handle) return "";
-  std::string bytes(512, '\0');
-  const ssize_t size = read(*handle, bytes.data(), bytes.size());
-  close(*handle);
-  bytes.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);
-  return bytes;
+  const auto bytes = readBeginning(file, 512);
+  if (!bytes) return "";
+  return bytes->starts_with("\xef\xbb\xbf") ? bytes->substr(3) : *bytes;
 }
 
 /// Returns true for the first line of an IGES file: 80 columns, the last of which are S and the number 1.

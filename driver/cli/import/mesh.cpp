@@ -7,6 +7,7 @@
 
 #include "base/counted.hpp"
 #include "base/regular_file.hpp"
+#include "base/short_number.hpp"
 #include "cli/support/command.hpp"
 #include "document/json_text.hpp"
 #include "kernels/part/file.hpp"
@@ -68,23 +69,19 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   return document::jsonLines(report);
 }
 
-/// Returns the name of a unit of so many metres; `otherwise` if it has none.
-std::string unitName(double metres, const char* otherwise) {
+/// Returns the name of a unit of so many metres, or its size if it has none.
+std::string unitName(double metres) {
   constexpr std::pair<double, const char*> kUnits[] = {{1, "m"},     {0.01, "cm"},   {0.001, "mm"},
                                                        {1e-6, "um"}, {0.0254, "in"}, {0.3048, "ft"}};
   for (const auto& [size, name] : kUnits)
     if (metres == size) return name;
-  return otherwise;
+  return withDigits(metres, 6) + " m";
 }
 
 /// Returns the unit of the file, as it is noted in the part.
 std::string unitOf(const importing::Placement& placement) {
-  char text[64];
-  if (placement.fit > 0)
-    std::snprintf(text, sizeof text, "whatever makes it fit into %.6g m", placement.fit);
-  else
-    std::snprintf(text, sizeof text, "%.6g m", placement.scale);
-  return placement.fit > 0 ? text : unitName(placement.scale, text);
+  if (placement.fit > 0) return "whatever makes it fit into " + withDigits(placement.fit, 6) + " m";
+  return unitName(placement.scale);
 }
 
 /// Returns how the points were turned and centred, as it is noted in the part; "" if they were not.

@@ -10,6 +10,7 @@
 
 #include "base/counted.hpp"
 #include "base/regular_file.hpp"
+#include "base/short_number.hpp"
 #include "cli/part/feature.hpp"
 #include "cli/part/poses.hpp"
 #include "cli/support/command.hpp"
@@ -26,8 +27,6 @@ using brep::kNone;
 using brep::Part;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
-                                         "B-spline", "extrusion", "revolution", "offset"};
 constexpr const char* kEdgeNames[] = {"unclassified", "smooth", "convex",       "concave",
                                       "mixed",        "free",   "non-manifold", "pole"};
 constexpr const char* kBodyNames[] = {"solid", "shell", "sheet", "mesh"};
@@ -85,7 +84,7 @@ Json instancesOf(const Part& part) {
 Json describe(const Part& part, std::size_t bytes) {
   std::map<std::string, std::size_t> faces, edges;
   for (const brep::Face& face : part.faces)
-    ++faces[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
+    ++faces[brep::kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
   for (const brep::Edge& edge : part.edges) ++edges[kEdgeNames[static_cast<std::size_t>(edge.kind)]];
   Json losses = Json::array();
   for (const brep::Loss& loss : part.losses)
@@ -176,11 +175,8 @@ void printBodies(const Json& info) {
 /// [mm] Returns three lengths as text. @param digits the box around a curved body is up to some 0.1 % too large
 std::string inMm(const Json& metres, const char* between, int digits) {
   std::string text;
-  for (const Json& length : metres) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.*g", digits, std::round(1e9 * length.get<double>()) * 1e-6 + 0.0);
-    text += (text.empty() ? "" : between) + std::string(number);
-  }
+  for (const Json& length : metres)
+    text += (text.empty() ? "" : between) + withDigits(std::round(1e9 * length.get<double>()) * 1e-6 + 0.0, digits);
   return text;
 }
 
@@ -202,18 +198,14 @@ void printInstances(const Json& info) {
 
 std::string sizeOf(const Json& loss) {
   const double size = loss["size_m"].get<double>();
-  char text[32] = "";
-  if (size > 0) std::snprintf(text, sizeof text, " (%.3g m)", size);
-  return text;
+  return size > 0 ? " (" + withDigits(size, 3) + " m)" : "";
 }
 
 /// Returns the file of a part, its unit, and how the import placed it.
 std::string sourceOf(const Json& source) {
   std::string text = source["file"].get<std::string>() + ", unit " + source["unit"].get<std::string>();
   if (source["unit_assumed"].get<bool>()) text += " (assumed)";
-  char scaled[40];
-  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source["scale"].get<double>());
-  if (source["scale"].get<double>() != 1) text += scaled;
+  if (const auto scale = source["scale"].get<double>(); scale != 1) text += ", scaled by " + withDigits(scale, 6);
   const std::string placed = source["placed"].get<std::string>();
   return text + (placed.empty() ? "" : ", " + placed);
 }

@@ -4,7 +4,6 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
-#include <cstdint>
 #include <functional>
 #include <optional>
 

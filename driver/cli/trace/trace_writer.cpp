@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/regular_file.hpp"
+#include "base/short_number.hpp"
 #include "document/csv.hpp"
 
 namespace hapticd::cli {
@@ -70,9 +71,7 @@ Result<void> TraceWriter::write(double t, const servo::Core& core, bool probe_va
     const servo::ModelState& model = core.models()[index];
     const servo::Contact& contact = core.contact(index, 0);
     const hsp_contact& c = contact.world;
-    char time[32];
-    std::snprintf(time, sizeof time, "%.17g", t);
-    line_ = time;
+    line_ = withDigits(t, 17);
     (line_ += ',') += names_[index];
     if (contact.traced) {
       whole(c.feature);

@@ -4,7 +4,6 @@
 /// HDF5 library from 1.8 on can read it. The HDF5 library itself is not used, because it keeps its index in memory: if
 /// the process is killed, its file cannot be opened. Here the file is valid between any two writes.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -54,8 +54,8 @@ const Column* RecordedStream::find(const std::string& name) const {
   return it == columns_.end() ? nullptr : &*it;
 }
 
-double RecordedStream::number(uint64_t index, const Column& column) const {
-  const std::byte* from = row(index) + column.offset;
+double numberOf(const std::byte* row, const Column& column) {
+  const std::byte* from = row + column.offset;
   switch (column.type) {
     case ColumnType::kReal:
       return as<double>(from);

@@ -14,6 +14,9 @@
 
 namespace hapticd::record {
 
+/// [any] Returns a number of a row as a double; counts above 2^53 are rounded. A text is NaN.
+double numberOf(const std::byte* row, const Column& column);
+
 /// The rows of one stream.
 class RecordedStream {
  public:
@@ -28,8 +31,7 @@ class RecordedStream {
   }
   const Column* find(const std::string& name) const;
 
-  /// [any] Returns a number of a row as a double; counts above 2^53 are rounded. A text is NaN.
-  double number(uint64_t index, const Column& column) const;
+  double number(uint64_t index, const Column& column) const { return numberOf(row(index), column); }
   /// [any] Returns a text of a row; "" for a number. A damaged file may hold bytes that are no text.
   std::string text(uint64_t index, const Column& column) const;
 

@@ -2,7 +2,6 @@
 /// Functions that the loaders of scene, device and daemon files share. Only for driver/daemon/scene.
 #pragma once
 #include <optional>
-#include <string>
 
 #include "host/catalog.hpp"
 #include "scene/format.hpp"

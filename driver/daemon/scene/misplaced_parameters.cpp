@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/misplaced_parameters.hpp"
 
-#include <algorithm>
 #include <string>
 
 namespace hapticd::scene::detail {

@@ -3,7 +3,6 @@
 /// notes the plugin, so that the next start leaves it out, saves the black box under the plugin's name, and exits.
 #pragma once
 #include <filesystem>
-#include <string>
 
 #include "watch/watch_target.hpp"
 

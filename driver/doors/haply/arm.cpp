@@ -7,14 +7,6 @@
 
 namespace hapticd::haply {
 
-namespace {
-
-uint64_t nowNs() {
-  return static_cast<uint64_t>(monotonicNow());
-}
-
-}  // namespace
-
 Arm::~Arm() {
   end_ = true;
   thread_.join();
@@ -26,7 +18,7 @@ bool Arm::readState(hapticd_state& state) {
   hapticd_state newer;
   if (hapticd_next_state(client_, device_, UINT64_MAX, kPatienceMs, &state) != 1) return false;
   // The memory still exists after the daemon has ended, so only new ticks show that the daemon runs.
-  return nowNs() < state.time_ns + kHoldsNs ||
+  return monotonicNow() < state.time_ns + kHoldsNs ||
          hapticd_next_state(client_, device_, state.tick, kPatienceMs, &newer) == 1;
 }
 
@@ -34,7 +26,7 @@ Result<void> Arm::push(const double force[3]) {
   {
     const std::lock_guard guard(lock_);
     std::copy_n(force, 3, force_);
-    heard_ns_ = nowNs();
+    heard_ns_ = monotonicNow();
   }
   if (lead_ != nullptr) return {};
   hapticd_error error;
@@ -46,7 +38,7 @@ Result<void> Arm::push(const double force[3]) {
 
 void Arm::readForce(double force[3]) const {
   const std::lock_guard guard(lock_);
-  const bool holds = nowNs() < heard_ns_ + kHoldsNs;
+  const bool holds = monotonicNow() < heard_ns_ + kHoldsNs;
   for (int i = 0; i < 3; ++i) force[i] = holds ? force_[i] : 0;
 }
 
@@ -60,9 +52,9 @@ void Arm::run() {
     last = state.tick;
     hapticd_push push{};
     push.tick = state.tick;
-    push.woke_ns = nowNs();
+    push.woke_ns = monotonicNow();
     readForce(push.force);
-    push.written_ns = nowNs();
+    push.written_ns = monotonicNow();
     hapticd_lead_push(lead_, &push);
   }
 }

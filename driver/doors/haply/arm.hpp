@@ -3,7 +3,6 @@
 /// program may send forces at a lower rate.
 #pragma once
 #include <atomic>
-#include <memory>
 #include <mutex>
 #include <string>
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "HD/hd.h"
+#include "base/clock.hpp"
 #include "library.hpp"
 
 namespace hapticd::hd {
@@ -132,7 +133,7 @@ void hdEndFrame(HHD device) {
   const Guard guard(all.lock);
   Arm* arm = all.find(device);
   if (arm == nullptr) return all.errors.push(HD_BAD_HANDLE, device);
-  arm->end(all.scheduler().tickOfCaller(), nowNs(), all.scheduler().running());
+  arm->end(all.scheduler().tickOfCaller(), hapticd::monotonicNow(), all.scheduler().running());
 }
 
 HDErrorInfo hdGetError(void) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Converts joint torques, which some HDAPI programs set, to a force and a torque at the tip, which hapticd takes.
 #pragma once
-#include <vector>
 
 #include "facts.hpp"
 #include "hapticd/client.h"

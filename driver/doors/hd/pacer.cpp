@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <ctime>
 
+#include "base/clock.hpp"
 #include "library.hpp"
 
 namespace hapticd::hd {
@@ -21,12 +22,6 @@ void sleepNs(uint64_t ns) {
 }
 
 }  // namespace
-
-uint64_t nowNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<uint64_t>(now.tv_sec) * kSecond + static_cast<uint64_t>(now.tv_nsec);
-}
 
 double Pacer::rate() const {
   const Guard guard(library_.lock);
@@ -49,7 +44,7 @@ uint64_t Pacer::wait() {
   }
   hapticd_state state;
   const bool there = waitFor(lead, state);
-  const uint64_t ns = nowNs();
+  const uint64_t ns = monotonicNow();
   if (there) {
     seen_ = state.tick;
     silent_since_ns_ = 0, lost_ = lead.link->lost = false;
@@ -73,7 +68,7 @@ bool Pacer::waitFor(const LeadingArm& lead, hapticd_state& state) {
 
 /// Called if no state came in time. Reports the error once, until states come again.
 void Pacer::missed(const LeadingArm& lead) {
-  const uint64_t now = nowNs();
+  const uint64_t now = monotonicNow();
   if (silent_since_ns_ == 0) silent_since_ns_ = now, looked_ns_ = 0;
   if (lost_ || now - looked_ns_ < kLookNs) return;
   looked_ns_ = now;
@@ -93,7 +88,7 @@ void Pacer::show(const LeadingArm& lead, const hapticd_state& state, uint64_t ns
 
 void Pacer::endTick() {
   const Guard guard(library_.lock);
-  const uint64_t ns = nowNs();
+  const uint64_t ns = monotonicNow();
   for (Arm& arm : library_.arms()) arm.heartbeat(ns);
 }
 

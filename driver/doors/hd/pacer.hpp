@@ -43,6 +43,4 @@ class Pacer {
   std::atomic<unsigned> listen_us_{0};
 };
 
-uint64_t nowNs();
-
 }  // namespace hapticd::hd

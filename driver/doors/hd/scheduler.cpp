@@ -14,6 +14,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/clock.hpp"
 #include "errors.hpp"
 #include "facts.hpp"
 #include "pacer.hpp"
@@ -250,7 +251,7 @@ uint64_t Scheduler::tickOfCaller() const {
 
 double Scheduler::secondsInTick() const {
   const uint64_t began = began_ns_;
-  return began != 0 ? static_cast<double>(nowNs() - began) / kNsPerSecond : 0;
+  return began != 0 ? static_cast<double>(monotonicNow() - began) / kNsPerSecond : 0;
 }
 
 }  // namespace hapticd::hd

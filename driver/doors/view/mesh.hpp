@@ -7,7 +7,6 @@
 ///     rows:      u32 stream, row_bytes, count, 0, rows
 #pragma once
 #include <cstdint>
-#include <span>
 
 #include "daemon.hpp"
 #include "peer.hpp"

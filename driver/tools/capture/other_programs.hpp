@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Lines of captures that other programs have written: usbmon of the kernel, and the hex dumps of Wireshark.
 #pragma once
-#include <cstdint>
 #include <optional>
 #include <string>
 

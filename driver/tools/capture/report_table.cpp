@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/counted.hpp"
+#include "capture/layout_hint.hpp"
 #include "capture/resync.hpp"
 #include "codec/framer.hpp"
 
@@ -308,11 +309,7 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
 static std::string idsOf(const std::set<int>& ids) {
   constexpr size_t kFew = 4;
   std::string text;
-  for (const int id : ids) {
-    char number[8];
-    std::snprintf(number, sizeof number, "0x%02x", static_cast<unsigned>(id));
-    text += (text.empty() ? " (" : ", ") + std::string(number);
-  }
+  for (const int id : ids) text += (text.empty() ? " (" : ", ") + hexByte(id);
   return ids.size() > kFew ? "" : text + ")";
 }
 

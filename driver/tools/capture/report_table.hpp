@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Decodes a capture into numbers with a wire format, report by report, and says why some bytes are not a report.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <set>
 #include <string>

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdio>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "base/counted.hpp"
+#include "capture/layout_hint.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -62,9 +62,7 @@ bool beginsLater(const codec::Report& report, const Header& header) {
 }
 
 std::string framingOf(const Header& header) {
-  char text[48];
-  std::snprintf(text, sizeof text, "framing: {start: 0x%02x}", static_cast<unsigned>(header.byte));
-  return text;
+  return "framing: {start: " + hexByte(header.byte) + "}";
 }
 
 /// Returns true if a report has a checksum, constant or firmware number, which would be wrong at another place.
@@ -143,13 +141,11 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
 /// Finds the size of reports, and where they begin, from a byte that they have in common.
 std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
   const size_t size = wire.input.size;
-  char begins[64];
   Counts counts{};
   for (const uint8_t byte : bytes) ++counts[byte];
   if (const auto header = headerOf(bytes, counts, size)) {
     if (header->at == 0 || !beginsLater(wire.input, *header)) return "";
-    std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
-    return std::string(begins) + " occurs at byte " + std::to_string(header->at) + " of the capture and every " +
+    return hexByte(header->byte) + " occurs at byte " + std::to_string(header->at) + " of the capture and every " +
            std::to_string(size) +
            " bytes after it: if it begins each report, the capture begins in the middle of one; give " +
            framingOf(*header) + ", and the reports are found\n";
@@ -157,8 +153,7 @@ std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decode
   if (2 * decoded.good() > decoded.reports.size() && bytes.size() % size == 0) return "";
   for (size_t other = size + 1; other <= std::min(2 * size, codec::kMaxReportBytes); ++other)
     if (const auto header = headerOf(bytes, counts, other)) {
-      std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
-      return std::string(begins) + " occurs every " + std::to_string(other) + " bytes, first at byte " +
+      return hexByte(header->byte) + " occurs every " + std::to_string(other) + " bytes, first at byte " +
              std::to_string(header->at) + ": if it begins each report, give " + framingOf(*header) +
              " and wire.input size: " + std::to_string(other) + " (it is " + std::to_string(size) +
              "); size and offsets count this byte\n";

@@ -2,7 +2,6 @@
 /// Tests what a step costs: it must end within a period, must not wait, and must make no system call, allocation or
 /// lock.
 #include <algorithm>
-#include <cstdio>
 
 #include "base/clock.hpp"
 #include "base/counted.hpp"
@@ -38,9 +37,7 @@ uint64_t median(std::vector<uint64_t> values) {
 }
 
 std::string milliseconds(uint64_t ns) {
-  char words[32];
-  std::snprintf(words, sizeof words, "%.2g ms", static_cast<double>(ns) * 1e-6);
-  return words;
+  return roughly(static_cast<double>(ns) * 1e-6) + " ms";
 }
 
 /// Returns why such steps are too slow for the period of the servo, or "". Waits and computing time of a step do not

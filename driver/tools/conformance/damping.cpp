@@ -3,7 +3,6 @@
 /// Friction hides the energy that a damper of the wrong sign gives, but not its force.
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "conformance/building_blocks.hpp"
 #include "servo/safety/claim.hpp"

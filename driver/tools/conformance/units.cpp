@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests the units of parameters. A scene is in SI units throughout, so a person reads a number in mm among metres as
 /// metres. The host reads some units as well: it knows a damper by "N s/m".
-#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <string_view>

@@ -4,7 +4,6 @@
 /// encoded, except for a text, which may only be the last column.
 #pragma once
 #include <array>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

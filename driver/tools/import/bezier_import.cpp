@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/short_number.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr int kMaxDegree = 15;
 constexpr int kMaxPatches = 100'000;
-constexpr size_t kCleanDigits = 9;  ///< digits of a written coordinate; more would show rounding errors of scaling
+constexpr int kCleanDigits = 9;  ///< digits of a written coordinate; more would show rounding errors of scaling
 
 /// Reads the numbers of a file with their lines, and skips comments.
 class Numbers {
@@ -80,9 +81,7 @@ Vector3d turned(const Vector3d& p, char up) {
 }
 
 double clean(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", static_cast<int>(kCleanDigits), value);
-  const double rounded = std::strtod(text, nullptr);
+  const double rounded = std::strtod(withDigits(value, kCleanDigits).c_str(), nullptr);
   return rounded == 0 ? 0.0 : rounded;  // no minus zero
 }
 

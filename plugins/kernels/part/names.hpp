@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Names of the instances and features of a part, for messages.
+/// Names of the surfaces, instances and features of a part, for messages.
 #pragma once
 #include <string>
 
 #include "kernels/part/part.hpp"
 
 namespace hapticd::brep {
+
+/// The kinds of surfaces, in the order of SurfaceKind.
+inline constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
+                                                "B-spline", "extrusion", "revolution", "offset"};
 
 /// [main] Replaces the control characters of a UTF-8 text by spaces. Names from other programs' files are shown in
 /// terminals, which would act on control characters.

@@ -9,13 +9,13 @@ Usage: all_at_once.py HAPTICD FOLDER       prints a line a file; exit 1 when one
 import glob
 import os
 import re
-import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, FOLDER = sys.argv[1], os.path.abspath(sys.argv[2])
+hapticd = program(HAPTICD)
 
 
 def wanted(file):
@@ -33,7 +33,7 @@ def wanted(file):
 
 
 def told(file):
-    done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", file)
     lines = {}
     for line in done.stdout.splitlines():
         if place := re.match(r"(/.*?):(\d+):\d+: (.*)$", line):

@@ -8,18 +8,18 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import LONG, check, finish
+from e2e import LONG, check, finish, program
 
 HAPTICD, SOURCE, SHIPPED, BROKEN, SHAPES = sys.argv[1:6]
+hapticd = program(HAPTICD)
 
 
 def examined(file, *more):
-    done = subprocess.run([HAPTICD, "plugin", "check", file, "--json", *more], capture_output=True, text=True, timeout=280)
+    done = hapticd("plugin", "check", file, "--json", *more)
     try:
         tests = json.loads(done.stdout)["tests"]
     except ValueError:
@@ -86,7 +86,7 @@ untested = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("ring_silent
 check("what was never touched is said to be untested", "NOT TESTED" in untested[0], untested)
 
 # A hang is found once: not by each of 26 tests in turn.
-done = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "hanging.so"), "--timeout", "1.5"], capture_output=True, text=True, timeout=120)
+done = hapticd("plugin", "check", os.path.join(BROKEN, "hanging.so"), "--timeout", "1.5")
 check("a plugin that hangs fails", done.returncode == 1 and "took longer than 1.5" in done.stdout, done.stdout)
 check("only once, and the rest is not run", done.stdout.count("took longer") == 1 and "stopped at the first hang" in done.stdout, done.stdout)
 code, tests, failed, err = examined(os.path.join(BROKEN, "hanging.so"), "--timeout", "1")
@@ -146,7 +146,7 @@ steep = {t["name"]: t["why"] for t in tests if t["plugin"] == "steepens"}
 check("a law that turns steep below the surface is warned of", "at a depth of 2." in steep["deep-press"] and "its force grows by" in steep["deep-press"], steep)
 measured = [t["why"] for t in tests if (t["plugin"], t["name"], t["result"]) == ("right", "stiffness-vs-claim", "pass")]
 check("what was measured stands beside the claim", measured == ["it claims 500 N/m, and its force grows by 500 N/m at most"], measured)
-said = subprocess.run([HAPTICD, "plugin", "check", "slips.so", "--timeout", "15"], capture_output=True, text=True, timeout=280, cwd=BROKEN).stdout
+said = hapticd("plugin", "check", "slips.so", "--timeout", "15", cwd=BROKEN).stdout
 check("a bare name finds the same locks", "another thread that holds the lock would make the servo wait" in said, said[-500:])
 jump = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("millimetres", "force-continuous")][0]
 check("a jump has its place in m and its size in N", re.search(r"^at [-0-9.e, ]+ m: the force jumped by [0-9.e+]+ N while", jump), jump)
@@ -191,7 +191,7 @@ for dents, softer in (("dents=[0.2]", True), ("dents=[-1.5707963, 0.5]", True), 
         mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
         good = [name for name, _ in mine][-1:] == [LONG_LOOP] and "N/m stiff here" in mine[-1][1] if wrong else not mine
         check(f"{shape} with {dents} {'gives energy in long loops' if wrong else 'passes'}", tests and good, mine)
-said = subprocess.run([HAPTICD, "plugin", "check", SOFT], capture_output=True, text=True, timeout=280).stdout
+said = hapticd("plugin", "check", SOFT).stdout
 check("an array that is empty by default is told, with what to try", said.count("dents is empty by default") == 7 and "--set 'dents=[0]'" in said, said[-300:])
 
 # Mistakes of a first shape. Each is told by one test, which says what to do.
@@ -254,7 +254,7 @@ NEEDY = os.path.join(BROKEN, "needy.so")
 
 
 def refused(*options):
-    done = subprocess.run([HAPTICD, "plugin", "check", *options, NEEDY], capture_output=True, text=True, timeout=120)
+    done = hapticd("plugin", "check", *options, NEEDY)
     return done.returncode, done.stdout + done.stderr
 
 
@@ -266,7 +266,7 @@ for words in ('did you mean "stiffness"', "stiffness=soft", "rows=2.5", "law=cub
               "expected ID=VALUE"):
     check(f"--set: {words} is refused", code == 2 and words in said, said)
 scene = os.path.join(SOURCE, "config/scenes/teapot.yaml")
-done = subprocess.run([HAPTICD, "plugin", "check", scene], capture_output=True, text=True, timeout=120)
+done = hapticd("plugin", "check", scene)
 check("a scene is no plugin", done.returncode == 2 and "hapticd check FILE" in done.stderr and "ELF" not in done.stderr, done.stderr)
 code, said = refused("--set", "stiffness=50000")
 check("a value out of range is bad input", code == 2 and "expected 0 to 5000 N/m" in said and "tests" not in said, said)

@@ -12,14 +12,7 @@ import tempfile
 
 HAPTICD, SOURCE, PLUGINS, TESTED = sys.argv[1:5]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish, program
-
-
-def write(folder, name, text):
-    file = os.path.join(folder, name)
-    with open(file, "w") as out:
-        out.write(text)
-    return file
+from e2e import check, finish, program, write
 
 
 def scene(folder, plugin, geometry, more=""):

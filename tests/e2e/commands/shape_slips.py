@@ -10,7 +10,7 @@ import tempfile
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish, program
+from e2e import check, finish, program, write
 
 BALL = f"models:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml, stiffness: 800}}}}\n"
 ROOF = """format: hapticd-model/1
@@ -27,13 +27,6 @@ surfaces:
 edges:
   - sides: [[west, u1], [east, u0]]
 """
-
-
-def write(folder, name, text):
-    file = os.path.join(folder, name)
-    with open(file, "w") as out:
-        out.write(text)
-    return file
 
 
 def reach(folder, ask):

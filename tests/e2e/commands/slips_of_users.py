@@ -13,7 +13,7 @@ import tempfile
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish, program
+from e2e import check, finish, program, write
 
 SCENE = """hapticd: 1
 device: {source}/config/devices/simulated-premium15.yaml
@@ -25,13 +25,6 @@ models:
 """
 SPHERE = os.path.join(SOURCE, "config", "models", "sphere.yaml")
 STL = struct.pack("<80sI12f2x", b"", 1, *[0.0] * 3, 0, 0, 0, 1, 0, 0, 0, 1, 0)
-
-
-def write(folder, name, content):
-    file = os.path.join(folder, name)
-    with open(file, "wb") as out:
-        out.write(content if isinstance(content, bytes) else content.encode())
-    return file
 
 
 def scene(folder, geometry=SPHERE, stiffness=800, clients="off"):

@@ -6,15 +6,15 @@ Usage: unusual_arms.py HAPTICD SOURCE     prints one line per case; exit 1 when 
 import glob
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
 HAPTICD, SOURCE = (os.path.abspath(one) for one in sys.argv[1:3])
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 from arm_files import CHAIN, TWIN, WIRED
-from e2e import check, finish
+from e2e import check, finish, program
 
+hapticd = program(HAPTICD)
 PREMIUM = open(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")).read()
 SARCOS = open(os.path.join(SOURCE, "config", "devices", "sarcos.yaml")).read()
 IN, OUT = "parameters.wire.input.fields", "parameters.wire.output.fields"
@@ -245,7 +245,7 @@ def together(folder):
     for i, (text, changes, _) in enumerate(TOGETHER + ALONE):
         file, _ = written(os.path.join(folder, f"together{i}.yaml"), text + "|", changes)
         files.append(file)
-    done = subprocess.run([HAPTICD, "check", "--json", *files], capture_output=True, text=True, timeout=300)
+    done = hapticd("check", "--json", *files)
     told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
     for file, (_, _, keys) in zip(files[len(TOGETHER):], ALONE):
         all_told = told[file]["problems"] + told[file]["warnings"]
@@ -262,13 +262,13 @@ def strict(folder):
     """A limit that leaves nothing to feel is told at the device file, not at a model."""
     scene = os.path.join(SOURCE, "config", "scenes", "sphere.yaml")
     file, place = written(os.path.join(folder, "near.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, impulse: |0.002"})
-    done = subprocess.run([HAPTICD, "check", scene, "--device", file], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", scene, "--device", file)
     check("a limit that cuts all is told where it stands", f"{place}: limits.impulse: warning: this limit cuts the force" in done.stdout
           and "stiffness" not in done.stdout, done.stdout)
     weak, _ = written(os.path.join(folder, "weak.yaml"), PREMIUM + "|", {"arm: {": "arm: {max_torque: [0.02], "})
-    done = subprocess.run([HAPTICD, "check", scene, "--device", weak], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", scene, "--device", weak)
     check("the motors' bound has the name of its key", ": arm.max_torque cuts the force in" in done.stdout and "limits.motors" not in done.stdout, done.stdout)
-    done = subprocess.run([HAPTICD, "run", scene, "--device", weak, "--virtual-time", "--for", "2"], capture_output=True, text=True, timeout=120)
+    done = hapticd("run", scene, "--device", weak, "--virtual-time", "--for", "2")
     check("also in the summary of a run", "arm.max_torque: " in done.stdout + done.stderr and "motors (torque)" not in done.stdout + done.stderr, done.stdout + done.stderr)
     file, place = written(os.path.join(folder, "slow.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, velocity: |0.02"})
     with open(scene) as text:
@@ -277,13 +277,13 @@ def strict(folder):
     named = os.path.join(folder, "slow_scene.yaml")
     with open(named, "w") as out:
         out.write(own.replace(device[0], f"device: {file}") if device else own + f"device: {file}\n")
-    done = subprocess.run([HAPTICD, "check", named], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", named)
     both, place2 = written(os.path.join(folder, "both.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("0.0259", "|25.9", 1).rstrip(", ")})
     for i, change in enumerate((lambda text: text, lambda text: text.replace("radius:", "radios:"))):
         other = os.path.join(folder, f"other{i}.yaml")
         with open(other, "w") as out:
             out.write(change(own.replace(device[0], f"device: {both}")))
-        told = subprocess.run([HAPTICD, "check", other], capture_output=True, text=True, timeout=120)
+        told = hapticd("check", other)
         check(f"a scene {'with' if i else 'without'} mistakes tells those of its device", told.returncode == 2 * i and ("radios" in told.stdout) == bool(i)
               and f"{os.path.realpath(both)}{place2[len(both):]}: limits.motors[0].torque_constant: warning" in told.stdout, told.stdout)
     check("a fault that the hand meets is told", f"{os.path.realpath(file)}{place[len(file):]}: limits.velocity: warning: the tip of" in done.stdout, done.stdout)
@@ -292,36 +292,36 @@ def strict(folder):
 def refused(folder):
     for i, (text, changes, key, word) in enumerate(REFUSED):
         file, place = written(os.path.join(folder, f"refused{i}.yaml"), text, changes)
-        done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+        done = hapticd("check", file)
         check(f"refused: {key}: {word.strip()}", done.returncode == 2 and f"{place}: {key}: " in done.stdout and word in done.stdout, done.stdout)
     # A scene tells all of it, too, at the places there.
     file, _ = written(os.path.join(folder, "two.yaml"), WIRED, {"rate: 1000": "rate: |1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"})
     scene = os.path.join(folder, "scene.yaml")
     with open(scene, "w") as out:
         out.write(f"hapticd: 1\ndevice: two.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n")
-    done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", scene)
     told = [line for line in done.stdout.splitlines() if f"{os.path.realpath(file)}:" in line]
     chain = os.path.join(folder, "chain.yaml")
     with open(chain, "w") as out:
         out.write(CHAIN.replace("mount: {position: [-0.42, 0, 0.09]}\n", ""))
-    base = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", chain], capture_output=True, text=True, timeout=120)
+    base = hapticd("check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", chain)
     check("a chain without a mount stands in a sphere", f"{chain}:1:1: mount: warning: mine stands with its base in the middle of sphere" in base.stdout, base.stdout)
-    new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", "crc9"], capture_output=True, text=True, timeout=120, cwd=folder)
+    new = hapticd("device", "new", "a3", "--no-questions", "--checksum", "crc9", cwd=folder)
     check("a checksum without a name writes nothing", new.returncode == 2 and "--checksum crc9: no checksum has this name" in new.stderr
           and not os.path.exists(os.path.join(folder, "a3.yaml")), new)
     for given, meant in (("CRC16", "crc16"), ("modbus", "crc16-modbus"), ("crc-32", "crc32"), ("summ", "sum")):
-        new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", given], capture_output=True, text=True, timeout=120, cwd=folder)
+        new = hapticd("device", "new", "a3", "--no-questions", "--checksum", given, cwd=folder)
         check(f"for the checksum {given} a name is proposed", new.returncode == 2 and f'did you mean "{meant}"?' in new.stderr, new)
     double = os.path.join(folder, "double.yaml")
     with open(double, "w") as out:
         out.write(WIRED.replace("exchange: stream", "exchange: pull").replace("joint: 2, at: 4", "joint: 1, at: 4"))
-    checked = subprocess.run([HAPTICD, "check", double], capture_output=True, text=True, timeout=120)
-    twin = subprocess.run([HAPTICD, "device", "twin", double], capture_output=True, text=True, timeout=120, cwd=folder)
+    checked = hapticd("check", double)
+    twin = hapticd("device", "twin", double, cwd=folder)
     problems = [line for line in checked.stdout.splitlines() if line.startswith(double) and ": warning: " not in line]
     check("a twin of a faulty file is refused with the problems that check tells", twin.returncode == 2 and len(problems) == 3 and all(line in twin.stderr for line in problems)
           and not os.path.exists(os.path.join(folder, "double-twin.yaml")), (problems, twin))
     soft, _ = written(os.path.join(folder, "soft.yaml"), WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"})
-    stiff = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft], capture_output=True, text=True, timeout=120)
+    stiff = hapticd("check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft)
     check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "expected at most 0.6 N/m" not in stiff.stdout, stiff.stdout)
     check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
 
@@ -334,7 +334,7 @@ def degrees(folder):
         file = os.path.join(folder, f"degrees{i}.yaml")
         with open(file, "w") as out:
             out.write(WIRED.replace(rad, limits))
-        done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+        done = hapticd("check", file)
         check(f"limits in degrees are told at once: {limits}", all(word in done.stdout for word in words) and "inverse()" not in done.stdout, done.stdout)
 
 
@@ -366,7 +366,7 @@ def main():
             usual.append(os.path.join(folder, f"usual{i}.yaml"))
             written(usual[-1], text + "|", changes)
         ships = right()
-        done = subprocess.run([HAPTICD, "check", "--json", *(one[0] for one in placed), *usual, *ships], capture_output=True, text=True, timeout=300)
+        done = hapticd("check", "--json", *(one[0] for one in placed), *usual, *ships)
         told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
         for file, place, key, word in placed:
             lines = [f"{w['file']}:{w['line']}:{w['column']}: {w['key']}: {w['what']}" for w in told[file]["warnings"]]

@@ -17,7 +17,7 @@ import h5py
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
 
@@ -36,10 +36,7 @@ class Daemon:
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def ask(self, *arguments):
-        done = subprocess.run([HAPTICD, *arguments, "--name", "x"] if arguments[0] == "top" else
-                              [HAPTICD, "ctl", "--name", "x", *arguments], env=self.environment, capture_output=True,
-                              text=True, timeout=30)
-        return done.returncode, done.stdout, done.stderr
+        return program(HAPTICD, self.environment)(*(() if arguments[0] == "top" else ("ctl",)), *arguments, "--name", "x")
 
     def until(self, predicate):
         end = time.monotonic() + 30

@@ -10,12 +10,13 @@ import socket
 import subprocess
 import sys
 import tempfile
+from functools import partial
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import bumpy_ball
-from e2e import check, finish, until
+from e2e import check, finish, program, until
 
 HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
 RINGS = 500
@@ -124,11 +125,7 @@ def main(folder):
         out.write(f"hapticd: 1\nservo: {{rate: 1000}}\ndevice: {CONFIG}/devices/simulated-premium15.yaml\nhand: {{radius: 0.038}}\n"
                   f"models:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {part}, stiffness: 600}}}}\n")
     environment = {**os.environ, "RUNTIME_DIRECTORY": folder, "STATE_DIRECTORY": folder, "XDG_STATE_HOME": folder}
-
-    def ctl(*arguments):
-        done = subprocess.run([HAPTICD, "ctl", "--name", "large", *arguments], env=environment, capture_output=True, text=True, timeout=120)
-        return done.returncode, done.stdout, done.stderr
-
+    ctl = partial(program(HAPTICD, environment), "ctl", "--name", "large")
     run = subprocess.Popen([HAPTICD, "run", scene, "--name", "large", "--for", "600", "--record", record], env=environment,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
@@ -138,7 +135,7 @@ def main(folder):
         in_memory(daemon)
         by_hand(ctl, folder)
         check("the run ends in order", ctl("stop")[0] == 0 and run.wait(timeout=60) == 0)
-        again = subprocess.run([HAPTICD, "replay", record], env=environment, capture_output=True, text=True, timeout=300)
+        again = program(HAPTICD, environment)("replay", record)
         check("what was felt meanwhile is what is felt without a drawing", again.returncode == 0, again.stdout + again.stderr)
     finally:
         run.kill()

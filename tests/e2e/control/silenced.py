@@ -11,7 +11,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SHAPES = sys.argv[1:3]
 
@@ -22,9 +22,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
                            "  - {name: bad, plugin: misbehaving, parameters: {how: not_finite, after: 100, times: 10}}\n")
 
     def ask(*arguments):
-        done = subprocess.run([HAPTICD, *arguments, "--name", "hush"] if arguments[0] == "top" else [HAPTICD, "ctl", "--name", "hush", *arguments],
-                              env=environment, capture_output=True, text=True, timeout=60)
-        return done.returncode, done.stdout, done.stderr
+        return program(HAPTICD, environment)(*(() if arguments[0] == "top" else ("ctl",)), *arguments, "--name", "hush")
 
     run = subprocess.Popen([HAPTICD, "run", scene, "--name", "hush", "--for", "60"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     try:

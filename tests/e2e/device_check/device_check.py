@@ -5,15 +5,14 @@ Usage: device_check.py HAPTICD SOURCE_DIR MODULE_FOLDER PLUGIN_FOLDER     exit 1
 """
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SOURCE, MODULES, PLUGINS = sys.argv[1:5]
-folder = tempfile.mkdtemp()
+run, folder = program(HAPTICD, together=True), tempfile.mkdtemp()
 os.environ["HAPTICD_PLUGIN_PATH"] = ":".join((MODULES, PLUGINS, os.path.join(os.path.dirname(PLUGINS.rstrip("/")), "devices")))
 os.environ["XDG_STATE_HOME"] = folder
 
@@ -26,11 +25,6 @@ def put(name, text):
 
 def arm(slip):
     return put(slip + ".yaml", f"hapticd-device: 1\nmodule: slips_arm\nlimits: {{force: 3}}\nparameters: {{slip: {slip}}}\n")
-
-
-def run(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=300)
-    return done.returncode, done.stdout + done.stderr
 
 
 def examined(slip, *more):

@@ -12,20 +12,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
 
 
 with tempfile.TemporaryDirectory() as folder:
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-
-    def ctl(*arguments):
-        done = subprocess.run([HAPTICD, "ctl", "--name", "drawn", *arguments], env=environment, capture_output=True,
-                              text=True, timeout=30)
-        return done.returncode, done.stdout, done.stderr
+    ctl = partial(program(HAPTICD, environment), "ctl", "--name", "drawn")
 
     def seconds():
         return json.loads(ctl("status")[1])["seconds"]

@@ -8,15 +8,15 @@ import csv
 import math
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import soft_runs
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SCENES = sys.argv[1], os.path.join(os.path.abspath(sys.argv[2]), "scenes", "soft")
+hapticd = program(HAPTICD)
 STIFFNESS = 200  # N/m, of soft-plate.yaml
 
 
@@ -89,8 +89,7 @@ def swingsBack():
         for name, text in (("body.yaml", BODY), ("scene.yaml", SCENE), ("path.csv", "t,x,y,z\n" + path)):
             with open(file(name), "w", encoding="utf-8") as out:
                 out.write(text)
-        told = subprocess.run([HAPTICD, "trace", file("scene.yaml"), "--probe", file("path.csv"), "--out", file("out.csv")],
-                              capture_output=True, text=True, timeout=120)
+        told = hapticd("trace", file("scene.yaml"), "--probe", file("path.csv"), "--out", file("out.csv"))
         check("a heavy body that swings back is not silenced", told.returncode == 0, told.stderr)
         with open(file("out.csv"), encoding="utf-8") as out:
             force = [float(row["fz"]) for row in csv.DictReader(out)]
@@ -106,8 +105,7 @@ def undamped():
                                ("scene.yaml", SCENE)):
                 with open(os.path.join(folder, name), "w", encoding="utf-8") as out:
                     out.write(text)
-            done = subprocess.run([HAPTICD, command, os.path.join(folder, "scene.yaml")], capture_output=True, text=True,
-                                  timeout=60)
+            done = hapticd(command, os.path.join(folder, "scene.yaml"))
             return done.stdout + done.stderr
         warned = " ".join(told("check", 0).split())
         found = re.search(r"it is not passive on any arm; give it a damping of at least ([0-9.]+) N s/m", warned)
@@ -124,6 +122,6 @@ mesh()
 swingsBack()
 undamped()
 for name in ("relaxation.yaml", "two-hands.yaml", "mesh.yaml"):
-    told = subprocess.run([HAPTICD, "check", scene(name)], capture_output=True, text=True, timeout=60)
+    told = hapticd("check", scene(name))
     check(f"{name} is checked without a warning", told.returncode == 0 and "warning" not in told.stdout, told.stdout)
 finish()

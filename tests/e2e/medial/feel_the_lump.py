@@ -6,14 +6,13 @@ Usage: feel_the_lump.py HAPTICD CONFIG     prints one line per case; exit 1 when
 import csv
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
-HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
+hapticd, CONFIG = program(sys.argv[1]), os.path.abspath(sys.argv[2])
 SCENE = os.path.join(CONFIG, "scenes", "soft-palpation.yaml")
 LUMP = (0.018, -0.009)
 
@@ -25,8 +24,7 @@ def pressed(folder, x, y):
         file.write("t,x,y,z\n")
         for i in range(300):
             file.write(f"{1e-3 * i:.3f},{x},{y},{0.06 - 1.5e-4 * i:.6f}\n")
-    subprocess.run([HAPTICD, "trace", SCENE, "--probe", probe, "--out", out], check=True, timeout=60,
-                   stdout=subprocess.DEVNULL)
+    hapticd("trace", SCENE, "--probe", probe, "--out", out, check=True)
     with open(out, encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if float(row["depth"]) > 0.004:
@@ -41,7 +39,7 @@ with tempfile.TemporaryDirectory() as work:
     check("elsewhere it is the same everywhere", max(away) < 1.1 * min(away), away)
     grid = [(x, y) for x in (-0.03, -0.01, 0.01, 0.02, 0.03) for y in (-0.02, -0.01, 0, 0.01, 0.02)]
     found = max(grid, key=lambda place: pressed(work, *place))
-    told = subprocess.run([HAPTICD, "check", SCENE], capture_output=True, text=True, timeout=60)
+    told = hapticd("check", SCENE)
     check("the scene passes its own stability check", told.returncode == 0 and "warning" not in told.stdout, told.stdout)
     check("pressing every 10 mm finds it", math.dist(found, LUMP) < 0.005, found)
 finish()

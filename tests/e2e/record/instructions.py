@@ -6,7 +6,6 @@ Usage: instructions.py HAPTICD SOURCE     prints one line per case; exit 1 when 
 """
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
@@ -14,15 +13,14 @@ import h5py
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 with open(os.path.join(SOURCE, "config", "scenes", "teapot.yaml")) as file:
     TEAPOT = file.read().replace("../", os.path.join(SOURCE, "config") + "/")
 
 
 def run(environment, *arguments):
-    done = subprocess.run([HAPTICD, *arguments], env=dict(os.environ, **environment), capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout + done.stderr
+    return program(HAPTICD, dict(os.environ, **environment), together=True)(*arguments)
 
 
 def record(folder, instructions, **environment):

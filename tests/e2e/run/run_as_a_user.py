@@ -12,9 +12,10 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import LONG, check, finish
+from e2e import LONG, check, finish, program
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
+hapticd = program(HAPTICD, timeout=120)
 SCENES = os.path.join(SOURCE, "config", "scenes")
 
 
@@ -60,13 +61,13 @@ def main():
             check(f"{sig.name} is no fault", written and written["faults"] == [], written and written["faults"])
 
     def refused(name, *arguments):
-        done = subprocess.run([HAPTICD, "run", *arguments], capture_output=True, text=True, timeout=20)
+        done = hapticd("run", *arguments)
         check(f"{name} is refused with exit code 2 and a reason", done.returncode == 2 and done.stderr.strip(), (done.returncode, done.stderr))
 
     teapot = os.path.join(SCENES, "teapot.yaml")
     refused("--for -1", teapot, "--for", "-1")
     refused("--for 1s", teapot, "--for", "1s")
-    done = subprocess.run([HAPTICD, "run", teapot, "--for", "1s"], capture_output=True, text=True, timeout=20)
+    done = hapticd("run", teapot, "--for", "1s")
     check("and says how to write it", "expected seconds, such as --for 10" in done.stderr + done.stdout, done.stderr)
     refused("a report that cannot be written", teapot, "--for", "1", "--report", "/dev/null/report.json")
     refused("a missing scene", "/nonexistent/scene.yaml")
@@ -82,7 +83,7 @@ def main():
             models = 10000 if LONG else 2000
             for i in range(models):
                 out.write(f"  - {{name: m{i}, plugin: nurbs_rigid, pose: {{position: [{i % 100}, {i // 100}, 0]}}, parameters: {{geometry: {model}}}}}\n")
-        done = subprocess.run([HAPTICD, "run", scene, "--for", "0.2", "--virtual-time"], capture_output=True, text=True, timeout=120)
+        done = hapticd("run", scene, "--for", "0.2", "--virtual-time")
         check(f"a scene of {models} models runs, or says why not", done.returncode in (0, 2) and (done.returncode == 0 or done.stderr), (done.returncode, done.stderr[-300:]))
     finish()
 

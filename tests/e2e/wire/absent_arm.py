@@ -5,21 +5,14 @@ Usage: absent_arm.py HAPTICD       exit 1 when one is off
 """
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
-HAPTICD = sys.argv[1]
 COUNTER = "        - {is: counter, at: 0, type: u16}"
-
-
-def run(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout + done.stderr
-
+run = program(sys.argv[1], together=True)
 
 with tempfile.TemporaryDirectory() as folder:
     arm = os.path.join(folder, "own.yaml")

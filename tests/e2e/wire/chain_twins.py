@@ -6,22 +6,16 @@ Usage: chain_twins.py HAPTICD SOURCE_DIR       exit 1 when one is off
 import json
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
 HAPTICD, SOURCE = sys.argv[1:3]
 SPHERE = os.path.join(SOURCE, "config/scenes/sphere.yaml")
 RIGHT = "1.5707963"
-
-
-def run(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=300)
-    return done.returncode, done.stdout, done.stderr
-
+run = program(HAPTICD)
 
 with tempfile.TemporaryDirectory() as folder:
     arm, twin, report = (os.path.join(folder, name) for name in ("arm.yaml", "arm-twin.yaml", "report.json"))

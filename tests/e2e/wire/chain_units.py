@@ -4,14 +4,13 @@
 Usage: chain_units.py HAPTICD       exit 1 when one is off
 """
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 
-HAPTICD = sys.argv[1]
+hapticd = program(sys.argv[1], together=True)
 ARM = """hapticd-device: 1
 module: usb_hid
 limits: {force: 3}
@@ -48,8 +47,7 @@ def told(**changed):
     path = os.path.join(tempfile.mkdtemp(), "arm.yaml")
     with open(path, "w") as file:
         file.write(text)
-    done = subprocess.run([HAPTICD, "check", path], capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout + done.stderr
+    return hapticd("check", path)
 
 
 code, text = told()

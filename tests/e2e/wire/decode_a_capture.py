@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program
 from wire import fed, modbus, table_of
 
 HAPTICD, SOURCE, BOARD, MODULES = sys.argv[1:5]
@@ -66,13 +66,13 @@ def report(counter, q1, q2, q3, buttons=0):
     return body + struct.pack("<I", binascii.crc32(body))
 
 
-run = fed(HAPTICD, "device")
+run, hapticd = fed(HAPTICD, "device"), program(HAPTICD)
 
 
 with tempfile.TemporaryDirectory() as folder:
     arm = os.path.join(folder, "invented.yaml")
     open(arm, "w").write(ARM)
-    done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", arm)
     check("the device file is good", done.returncode == 0, done.stdout + done.stderr)
 
     truth = [(i, 1000 * i, -2000 * i, 0.125 * i, i % 4) for i in range(40)]
@@ -188,7 +188,7 @@ with tempfile.TemporaryDirectory() as folder:
     wrong = ARM.replace("type: i24, scale", "type: i99, scale").replace("method: crc32", "method: crc33").replace("rate: 1000", "rate: fast").replace(
         "{is: enable, at: 4,", "{is: enabel, at: 4,").replace("to: 6}", "to: 60}")
     open(arm, "w").write(wrong)
-    done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+    done = hapticd("check", arm)
     lines = done.stdout.splitlines()
     def place(words, count=0):
         """Line of the n-th place where the words stand."""
@@ -202,7 +202,7 @@ with tempfile.TemporaryDirectory() as folder:
     for kind, more in (("phantom", ["--lengths", "0.21,0.17", "--bits", "24"]), ("delta", []), ("chain", ["--joints", "6", "--bits", "19", "--bus", "bulk"])):
         arm = os.path.join(folder, kind + ".yaml")
         code, out, err = run("new", kind, "-o", arm, "--kind", kind, "--no-questions", *more)
-        done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+        done = hapticd("check", arm)
         warned = [line for line in done.stdout.splitlines() if "warning" in line and not (kind == "chain" and ": mount: warning: not given" in line)]
         check(f"device new writes a {kind} that check accepts", code == 0 and done.returncode == 0 and not warned, (out, err, done.stdout))
         check(f"and says where a {kind} stands, or asks for it", kind != "chain" or "mount: {position: [-1.2, 0, 0.09]} puts the resting tip" in done.stdout, done.stdout)
@@ -268,23 +268,21 @@ with tempfile.TemporaryDirectory() as folder:
     text = open(twin).read()
     check("its encoders are those of the wire", code == 0 and "counts: [163840, 327680, 81920]" in text, text)
     check("numbers that it borrows are told", "has no max_force, continuous_force, max_stiffness, mass: the twin has those of a Premium 1.5" in err and err.split("own.yaml: ")[-1].strip() in text, (err, text))
-    done = subprocess.run([HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report],
-                          capture_output=True, text=True, timeout=120)
+    done = hapticd("run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report)
     touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
     check("and it presses the sphere", done.returncode == 0 and touched > 100, (touched, done.stdout[-800:], done.stderr[-800:]))
     # A chain with masses that does not say where they are would be pushed up.
     heavy = os.path.join(folder, "heavy.yaml")
     for centers, warned in (("", True), ("    centers: [[0, 0, 0], [-0.1, 0, 0], [-0.1, 0, 0]]\n", False)):
         open(heavy, "w").write(re.sub(r"    # masses:.*\n", "    masses: [0.5, 0.3, 0.2]\n" + centers, open(bent).read()))
-        done = subprocess.run([HAPTICD, "check", heavy], capture_output=True, text=True, timeout=60)
+        done = hapticd("check", heavy)
         check(f"masses with{'out' if warned else ''} centers", ("far end of its link" in done.stdout + done.stderr) == warned, (done.stdout, done.stderr))
     # A chain that does not say where it stands is put where scenes expect a hand.
     text = open(bent).read().replace("# limits: [[-1, 1], ...]", "limits: [[-1.5, 1.5], [-0.5, 1.5], [-2.57, -0.57]]").replace("# base_orientation", "base_orientation")
     open(bent, "w").write(text)
     os.remove(twin), os.remove(report)
     code, out, err = run("twin", bent, "-o", twin)
-    done = subprocess.run([HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report],
-                          capture_output=True, text=True, timeout=120)
+    done = hapticd("run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report)
     touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
     check("a chain's twin presses the sphere too", code == 0 and touched > 100, (touched, open(twin).read(), done.stdout[-800:], done.stderr[-800:]))
     for file, words in (("falcon.yaml", "expected phantom or chain"), ("sarcos.yaml", "arm.others"), ("simulated-premium15.yaml", "simulated already")):
@@ -296,7 +294,7 @@ with tempfile.TemporaryDirectory() as folder:
     keyboard, screen = pty.openpty()
     answers = "HID\nhid\nhello\n16c0:0486\n256\n7\nphantom\n0.21;0.17\n0.2\n0.21, 0.17\nmany\n4000\n-10\n9.5\n99\n24\n2\nCRC8\ncrc8\n\n\n"
     os.write(keyboard, answers.encode())
-    done = subprocess.run([HAPTICD, "device", "new", "asked", "-o", asked], stdin=screen, capture_output=True, text=True, timeout=120)
+    done = hapticd("device", "new", "asked", "-o", asked, stdin=screen)
     os.close(keyboard), os.close(screen)
     text = open(asked).read() if os.path.exists(asked) else ""
     check("wrong answers are asked for again", done.returncode == 0 and done.stdout.count("Bus: ") == 2 and done.stdout.count("Motor turns") == 2 and
@@ -309,11 +307,11 @@ with tempfile.TemporaryDirectory() as folder:
         code, out, err = run(command, asked)
         check(f"{command} of an arm that is not there says so once", code == 1 and err.count("fix:") == 1 and err.count("error:") == 1,
               (code, err))
-    done = subprocess.run([HAPTICD, "doctor", asked, "--seconds", "0"], capture_output=True, text=True, timeout=120)
+    done = hapticd("doctor", asked, "--seconds", "0")
     check("doctor says what is left when the machine stops", "nothing does when the machine itself stops" in done.stdout or
           "nothing is known that switches its motors off" in done.stdout, done.stdout)
     open(asked, "w").write(text.replace("# watchdog: 0.02", "watchdog: 0.02"))
-    done = subprocess.run([HAPTICD, "doctor", asked, "--seconds", "0"], capture_output=True, text=True, timeout=120)
+    done = hapticd("doctor", asked, "--seconds", "0")
     check("and that a watchdog does it", "its hardware switches the motors off when commands stop, as its file says" in done.stdout, done.stdout)
 
     window = os.path.join(folder, "window")
@@ -337,7 +335,7 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("record", os.path.join(SOURCE, "config/devices/simulated-premium15.yaml"))
     check("an arm without bytes cannot be recorded", code == 2 and "no bytes to record" in err, err)
 
-schema = subprocess.run([HAPTICD, "check", "--schema", "device"], capture_output=True, text=True, timeout=120).stdout
+schema = hapticd("check", "--schema", "device").stdout
 for key in ("bit_offset", "polynomial", "modulo", "escape", "final_xor"):
     check(f"the schema knows {key}", f'"{key}"' in schema)
 finish()

@@ -230,8 +230,8 @@ class Replay::Player final : public Clock {
       found.t =
           static_cast<double>(timeOf(std::min(found.tick, ticks_.rows() - 1)) - timeOf(0)) * kSecondsPerNanosecond;
       found.what = spec.name + ": " + column.name + subject(stream, then);
-      found.recorded = recorded_[stream]->number(row, column);
-      found.replayed = numberAt(now.data(), column);
+      found.recorded = record::numberOf(then, column);
+      found.replayed = record::numberOf(now.data(), column);
       if (!outcome.first || found.tick < outcome.first->tick) outcome.first = found;
       return;
     }
@@ -256,24 +256,6 @@ class Replay::Player final : public Clock {
     if (const RunModel* later = laterModel(replay_.run_.later, model, at<uint64_t>(row, 0)))
       return " of model " + later->model.name;
     return model < models.size() ? " of model " + models[model].name : "";
-  }
-
-  static double numberAt(const std::byte* row, const Column& column) {
-    switch (column.type) {
-      case record::ColumnType::kReal:
-        return at<double>(row, column.offset);
-      case record::ColumnType::kReal32:
-        return static_cast<double>(at<float>(row, column.offset));
-      case record::ColumnType::kCount:
-        return static_cast<double>(at<uint64_t>(row, column.offset));
-      case record::ColumnType::kWord:
-        return at<uint32_t>(row, column.offset);
-      case record::ColumnType::kInt:
-        return at<int32_t>(row, column.offset);
-      case record::ColumnType::kText:  // streams with texts are not compared
-        break;
-    }
-    return 0;
   }
 
   Replay& replay_;

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <ctime>
 
+#include "base/clock.hpp"
 #include "internal.hpp"
 #include "link/lead.hpp"
 
@@ -16,9 +17,7 @@ namespace {
 constexpr long kMsPerSecond = 1000, kNsPerMs = 1'000'000, kNsPerSecond = kMsPerSecond * kNsPerMs;
 
 int64_t nowNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return int64_t{now.tv_sec} * kNsPerSecond + now.tv_nsec;
+  return static_cast<int64_t>(hapticd::monotonicNow());
 }
 
 long nowMs() {

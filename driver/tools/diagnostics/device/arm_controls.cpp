@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/device/arm_controls.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

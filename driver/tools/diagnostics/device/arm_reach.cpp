@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <random>
-#include <vector>
 
 namespace hapticd::diagnostics {
 namespace {

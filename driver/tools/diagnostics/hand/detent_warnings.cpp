@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "diagnostics/hand/hand_script.hpp"

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/counted.hpp"
+#include "base/short_number.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -13,9 +15,6 @@ namespace {
 using brep::kNone;
 using brep::Part;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
-                                         "B-spline", "extrusion", "revolution", "offset"};
 
 struct Counts {
   std::size_t placed = 0, faces = 0;  ///< number of bodies that have an instance, and of their faces
@@ -30,14 +29,8 @@ Counts countsOf(const Part& part) {
     counts.faces += part.bodies[instance.body].face_count;
   }
   for (const brep::Face& face : part.faces)
-    ++counts.kinds[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
+    ++counts.kinds[brep::kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
   return counts;
-}
-
-std::string metresText(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
 }
 
 /// Returns the size of the part, such as "80 x 60 x 20 mm, ".
@@ -59,9 +52,7 @@ Json sizeJson(const Report& report) {
 
 std::string unitText(const brep::Source& source) {
   std::string text = "unit " + source.unit + (source.unit_assumed ? " (assumed)" : "");
-  char scaled[40];
-  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source.scale);
-  if (source.scale != 1) text += scaled;
+  if (source.scale != 1) text += ", scaled by " + withDigits(source.scale, 6);
   return text + (source.placed.empty() ? "" : ", " + source.placed);
 }
 
@@ -107,7 +98,7 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   for (const auto& said : {stepsOf(report), part.warnings, report.measures.notes})
     for (const std::string& line : said) add(line);
   for (const brep::Loss& loss : part.losses)
-    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + metresText(loss.size) + ")" : ""));
+    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + withDigits(loss.size, 3) + " m)" : ""));
   if (lines > kMostLines)
     text += "  and " + std::to_string(lines - kMostLines) + " more lines: --json lists them all\n";
   if (part.losses.empty()) text += "  nothing was lost\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <cstdio>
 
 #include "base/counted.hpp"
+#include "base/short_number.hpp"
 #include "mesh_import/mesh_part.hpp"
 
 namespace hapticd::importing {
@@ -12,11 +12,7 @@ using Eigen::Vector3d;
 /// Returns a point as text, such as "(10, 0, 20) mm".
 std::string where(const Vector3d& p) {
   std::string text;
-  for (int k = 0; k < 3; ++k) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%s%.4g", k > 0 ? ", " : "(", 1e3 * p[k]);
-    text += number;
-  }
+  for (const double metres : p) text += (text.empty() ? "(" : ", ") + withDigits(1e3 * metres, 4);
   return text + ") mm";
 }
 

@@ -2,8 +2,8 @@
 /// Reads PLY, the format of Greg Turk and of most scanners: a text header, then text or binary of either byte order.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/short_number.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/ply_body.hpp"
 #include "mesh_import/ply_colours.hpp"
@@ -220,11 +220,9 @@ class Reader {
 
   bool isPoint(double index) {
     if (index >= 0 && index < static_cast<double>(points_.size()) && index == std::floor(index)) return true;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", index);
-    if (points_.empty()) return fail("its vertex " + std::string(text) + " is not there: the file has no vertices");
-    return fail("its vertex " + std::string(text) + " is out of range, expected 0 to " +
-                std::to_string(points_.size() - 1));
+    const std::string vertex = "its vertex " + withDigits(index, 9);
+    if (points_.empty()) return fail(vertex + " is not there: the file has no vertices");
+    return fail(vertex + " is out of range, expected 0 to " + std::to_string(points_.size() - 1));
   }
 
   bool addPolygon() {

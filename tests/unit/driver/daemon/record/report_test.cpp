@@ -45,6 +45,11 @@ class Report : public testing::Test {
   fs::path dir_ = fs::temp_directory_path() / ("hapticd-report-" + std::to_string(getpid()));
 };
 
+testing::AssertionResult tells(const std::string& text, const std::string& words) {
+  const bool does = text.find(words) != std::string::npos;
+  return (does ? testing::AssertionSuccess() : testing::AssertionFailure()) << words << "\nin\n" << text;
+}
+
 ClientReport client(const std::string& program, uint64_t answers, uint64_t in_time) {
   ClientReport one;
   one.device = "arm", one.program = program, one.pid = 7;
@@ -58,8 +63,8 @@ TEST_F(Report, TellsOfContactWithoutForce) {
   report.models[0].contact = {};
   for (int i = 0; i < 300; ++i) report.models[0].contact.addUnfelt();
   const std::string text = summary(report);
-  EXPECT_NE(text.find("no force  in 300 further ticks: the model was disabled, or waited"), std::string::npos) << text;
-  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+  EXPECT_TRUE(tells(text, "no force  in 300 further ticks: the model was disabled, or waited"));
+  EXPECT_FALSE(tells(text, "touched no model"));
 }
 
 TEST_F(Report, TellsOfProgramsThatPushed) {
@@ -78,14 +83,12 @@ TEST_F(Report, TellsOfProgramsThatPushed) {
   EXPECT_EQ(clients[0].at("silences"), 2);
   EXPECT_DOUBLE_EQ(clients[0].at("largest_n"), 2.5);
   const std::string text = summary(report);
-  EXPECT_NE(
-      text.find("program spring on arm: 2000 answers, 98.0 % in the same tick, 2.0 % in the next; silent 2 times; "
-                "force max 2.50 N\nprogram late"),
-      std::string::npos)
-      << text;
-  EXPECT_NE(text.find("answer_time: 60e-6"), std::string::npos) << "the late one is told what helps\n" << text;
+  EXPECT_TRUE(tells(text,
+                    "program spring on arm: 2000 answers, 98.0 % in the same tick, 2.0 % in the next; silent 2 times; "
+                    "force max 2.50 N\nprogram late"));
+  EXPECT_TRUE(tells(text, "answer_time: 60e-6")) << "the late one is told what helps";
   report.answer_time = 60e-6;
-  EXPECT_EQ(summary(report).find("answer_time"), std::string::npos) << "that is set already";
+  EXPECT_FALSE(tells(summary(report), "answer_time")) << "that is set already";
   for (int i = 0; i < 100; ++i) add(report.clients, client("p" + std::to_string(i), 1, 1));
   EXPECT_EQ(report.clients.size(), 32u);
   EXPECT_EQ(report.clients.back().program, "p99");
@@ -113,7 +116,7 @@ TEST_F(Report, HasEveryPromisedKeyInItsUnit) {
 TEST_F(Report, IsWrittenWholeOrNotAtAll) {
   const auto written = writeJson(sample(), file("no-such-folder/r.json"));
   ASSERT_FALSE(written);
-  EXPECT_NE(written.error().find("no-such-folder"), std::string::npos);
+  EXPECT_TRUE(tells(written.error(), "no-such-folder"));
   ASSERT_TRUE(writeJson(sample(), file("r.json")));
   EXPECT_FALSE(fs::exists(file("r.json.part")));
 }
@@ -121,7 +124,7 @@ TEST_F(Report, IsWrittenWholeOrNotAtAll) {
 TEST_F(Report, TellsPeopleFaultsAndContact) {
   const std::string text = summary(sample());
   for (const char* words : {"1000 ticks", "ball (sphere)", "max 2.000 mm", "fault: the arm is gone"})
-    EXPECT_NE(text.find(words), std::string::npos) << text;
+    EXPECT_TRUE(tells(text, words));
 }
 
 TEST_F(Report, HasARowForEachOfTwoArms) {
@@ -134,16 +137,16 @@ TEST_F(Report, HasARowForEachOfTwoArms) {
   EXPECT_EQ(ball.at("contact_ticks"), 1);
   EXPECT_EQ(ball.at("feet"), nlohmann::json({{"nearest", 4}, {"held", 1}, {"degraded", 1}}));
   const std::string text = summary(report);
-  EXPECT_NE(text.find("(0 ticks) by left"), std::string::npos) << text;
-  EXPECT_NE(text.find("(1 ticks) by right"), std::string::npos) << text;
+  EXPECT_TRUE(tells(text, "(0 ticks) by left"));
+  EXPECT_TRUE(tells(text, "(1 ticks) by right"));
 }
 
 TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
   RunReport report = sample();
-  EXPECT_EQ(summary(report).find("accuracy"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "accuracy"));
   report.models.push_back({"far", "sphere", {}});
   report.models[1].degraded_ticks = 500;
-  EXPECT_NE(summary(report).find("lowered for 1 of 2 models, in up to 50 % of the ticks"), std::string::npos);
+  EXPECT_TRUE(tells(summary(report), "lowered for 1 of 2 models, in up to 50 % of the ticks"));
 }
 
 TEST_F(Report, NamesAModelWhoseStepsTakeLongerThanThePeriod) {
@@ -156,10 +159,8 @@ TEST_F(Report, NamesAModelWhoseStepsTakeLongerThanThePeriod) {
             "slow: ball took 5.1 ms in 220 ticks; the period is 1 ms: find the cause with hapticd plugin check\n");
   report.virtual_time = true;
   const std::string text = paceText(report, 1000);
-  EXPECT_NE(
-      text.find("220 of 1000 ticks took longer than their period of 1 ms: at this cost 1000 Hz would not be held"),
-      std::string::npos)
-      << text;
+  EXPECT_TRUE(
+      tells(text, "220 of 1000 ticks took longer than their period of 1 ms: at this cost 1000 Hz would not be held"));
   EXPECT_EQ(paceText(report, 100), "") << "a period of 10 ms is enough";
 }
 
@@ -168,8 +169,7 @@ TEST_F(Report, NamesAModelThatSleepsByItsLongestStep) {
   for (int i = 0; i < 1000; ++i) report.compute_us.add(i < 200 ? 5060 : 12);
   report.models[0].contact.add(true, 0.002, 1.5, 1e-3, 5'030'000);
   const std::string text = paceText(report, 1000);
-  EXPECT_NE(text.find("200 of 1000 ticks took longer than the period of 1 ms, and ball up to 5 ms"), std::string::npos)
-      << text;
+  EXPECT_TRUE(tells(text, "200 of 1000 ticks took longer than the period of 1 ms, and ball up to 5 ms"));
 }
 
 TEST_F(Report, SaysNothingOfAFewTicksThatABusyMachineWasLateIn) {
@@ -195,23 +195,22 @@ TEST_F(Report, BlamesNoModelForABusyMachineInVirtualTime) {
 
 TEST_F(Report, TellsPeopleThatNothingWasTouched) {
   RunReport report = sample();
-  EXPECT_EQ(summary(report).find("touched no model"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "touched no model"));
   report.models[0].contact = {};
-  EXPECT_NE(summary(report).find("touched no model"), std::string::npos);
+  EXPECT_TRUE(tells(summary(report), "touched no model"));
   report.faults = {"model ball: its plugin pulled the probe into its surface"};
-  EXPECT_EQ(summary(report).find("touched no model"), std::string::npos) << "that it was silenced says why";
+  EXPECT_FALSE(tells(summary(report), "touched no model")) << "that it was silenced says why";
 }
 
 TEST_F(Report, TellsPeopleOfForceWithoutASurface) {
   RunReport report = sample();
-  EXPECT_EQ(summary(report).find("HSP_OUT_TRACED"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "HSP_OUT_TRACED"));
   report.models[0].contact = {};
   report.models[0].contact.addUntraced(0.5);
   report.models[0].contact.addUntraced(1.12);
   const std::string text = summary(report);
-  EXPECT_NE(text.find("warning   ball pushed in 2 ticks without HSP_OUT_TRACED, with up to 1.12 N"), std::string::npos)
-      << text;
-  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+  EXPECT_TRUE(tells(text, "warning   ball pushed in 2 ticks without HSP_OUT_TRACED, with up to 1.12 N"));
+  EXPECT_FALSE(tells(text, "touched no model"));
   ASSERT_TRUE(writeJson(report, file("r.json")));
   const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
   EXPECT_EQ(ball.at("untraced").at("ticks"), 2);
@@ -225,13 +224,10 @@ TEST_F(Report, TellsPeopleOfForceWithoutADepthAndFromOutside) {
   report.models[0].contact.addDepthless(1.12);
   report.models[0].contact.addOutside(0.25);
   const std::string text = summary(report);
-  EXPECT_NE(text.find("warning   ball pushed in 2 ticks with depth_m left at 0, with up to 1.12 N"), std::string::npos)
-      << text;
-  EXPECT_NE(text.find("outside   ball pushed in 1 ticks from outside (depth_m below 0), with up to 0.25 N"),
-            std::string::npos)
-      << text;
-  EXPECT_EQ(text.find("HSP_OUT_TRACED"), std::string::npos) << text;
-  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+  EXPECT_TRUE(tells(text, "warning   ball pushed in 2 ticks with depth_m left at 0, with up to 1.12 N"));
+  EXPECT_TRUE(tells(text, "outside   ball pushed in 1 ticks from outside (depth_m below 0), with up to 0.25 N"));
+  EXPECT_FALSE(tells(text, "HSP_OUT_TRACED"));
+  EXPECT_FALSE(tells(text, "touched no model"));
   ASSERT_TRUE(writeJson(report, file("r.json")));
   const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
   EXPECT_EQ(ball.at("depthless").at("ticks"), 2);
@@ -240,9 +236,9 @@ TEST_F(Report, TellsPeopleOfForceWithoutADepthAndFromOutside) {
   // Beside contacts, what lasts longer than they do is told, and no more.
   report.models[0].contact = sample().models[0].contact;
   report.models[0].contact.addOutside(0.25);
-  EXPECT_EQ(summary(report).find("outside"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "outside"));
   for (uint64_t i = 0; i < report.models[0].contact.contactTicks(); ++i) report.models[0].contact.addOutside(1);
-  EXPECT_NE(summary(report).find("outside   ball pushed in "), std::string::npos);
+  EXPECT_TRUE(tells(summary(report), "outside   ball pushed in "));
 }
 
 TEST_F(Report, TellsPeopleOfAPullThatLastsMostOfAContact) {
@@ -250,12 +246,11 @@ TEST_F(Report, TellsPeopleOfAPullThatLastsMostOfAContact) {
   report.models[0].contact = {};
   for (int i = 0; i < 10; ++i) report.models[0].contact.add(true, 0.001, 1.5, 1e-3, 0);
   for (int i = 0; i < 5; ++i) report.models[0].contact.addPull(0.5);  // as a detent does
-  EXPECT_EQ(summary(report).find("pulled"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "pulled"));
   report.models[0].contact.addPull(1.5);
-  EXPECT_NE(summary(report).find("warning   ball pulled the hand in during 60 % of its contact, with up to 1.50 N: its "
-                                 "force may have the wrong sign; test it with hapticd plugin check"),
-            std::string::npos)
-      << summary(report);
+  EXPECT_TRUE(tells(summary(report),
+                    "warning   ball pulled the hand in during 60 % of its contact, with up to 1.50 N: its "
+                    "force may have the wrong sign; test it with hapticd plugin check"));
   ASSERT_TRUE(writeJson(report, file("r.json")));
   EXPECT_EQ(nlohmann::json::parse(read(file("r.json"))).at("models").at("ball").at("pulls").at("ticks"), 6);
 }
@@ -299,26 +294,24 @@ TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
   RunReport report = sample();
   const ContactWork work = pressed(1.8);
   report.models[0].given_j = work.given(), report.models[0].taken_j = work.taken();
-  EXPECT_NE(summary(report).find("warning   ball gave the hand 5 mJ more than it took (6.25 mJ)"), std::string::npos)
-      << summary(report);
+  EXPECT_TRUE(tells(summary(report), "warning   ball gave the hand 5 mJ more than it took (6.25 mJ)"));
   report.models[0].library = "my-plugins/ball.so";
-  EXPECT_NE(summary(report).find("find the cause with hapticd plugin check my-plugins/ball.so\n"), std::string::npos)
-      << summary(report);
+  EXPECT_TRUE(tells(summary(report), "find the cause with hapticd plugin check my-plugins/ball.so\n"));
   report.models[0].moves = true;  // it may have had that
-  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "gave the hand"));
   report.models[0].moves = false, report.models[0].began_j = 0.0051;
-  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos) << "the hand began inside";
+  EXPECT_FALSE(tells(summary(report), "gave the hand")) << "the hand began inside";
   report.models[0].began_j = 0, report.models[0].given_j = 0.0063, report.models[0].taken_j = 0.00625;
-  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
+  EXPECT_FALSE(tells(summary(report), "gave the hand"));
 }
 
 TEST_F(Report, TellsAResidualInAUnitThatReadsWell) {
   RunReport report = sample();
   report.models[0].degraded_ticks = 3;
   report.models[0].residual_m = 7.39e-3;
-  EXPECT_NE(summary(report).find("error up to 7.39 mm"), std::string::npos) << summary(report);
+  EXPECT_TRUE(tells(summary(report), "error up to 7.39 mm"));
   report.models[0].residual_m = 12e-6;
-  EXPECT_NE(summary(report).find("error up to 12 um"), std::string::npos) << summary(report);
+  EXPECT_TRUE(tells(summary(report), "error up to 12 um"));
 }
 
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
@@ -335,11 +328,11 @@ TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   const std::string svg = read(file("run.svg"));
   for (const char* words :
        {"too fast", "device lost", "&lt;ball&gt;", "limits.force: 8 N", "% of the ticks", "lateness"})
-    EXPECT_NE(svg.find(words), std::string::npos) << words;
-  EXPECT_EQ(svg.find("&gt;far&lt;"), std::string::npos);
-  EXPECT_NE(svg.find("a &lt;scene&gt; &amp; more"), std::string::npos);
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+    EXPECT_TRUE(tells(svg, words));
+  EXPECT_FALSE(tells(svg, "&gt;far&lt;"));
+  EXPECT_TRUE(tells(svg, "a &lt;scene&gt; &amp; more"));
+  EXPECT_FALSE(tells(svg, "nan"));
+  EXPECT_TRUE(tells(svg, "</svg>"));
   EXPECT_LT(svg.size(), 200000u);
 }
 
@@ -351,25 +344,20 @@ TEST_F(Report, NamesTheModelWhoseOneStepMadeTicksMiss) {
   report.models[1].contact.add(false, 0, 0, 1e-3, 20'000'000);
   EXPECT_EQ(paceText(report, 1000), "") << "no tick was missed";
   report.missed_ticks = 19;
-  EXPECT_NE(paceText(report, 1000).find("slow: 19 ticks were missed, and donut took 20 ms in its longest step"),
-            std::string::npos)
-      << paceText(report, 1000);
+  EXPECT_TRUE(tells(paceText(report, 1000), "slow: 19 ticks were missed, and donut took 20 ms in its longest step"));
   report.virtual_time = true;
   EXPECT_EQ(paceText(report, 1000), "") << "the wall clock of a busy machine makes as much";
   report.models[1].contact.add(false, 0, 0, 1e-3, 2'000'000'000);
-  EXPECT_NE(paceText(report, 1000).find("slow: donut took 2e+03 ms in its longest step"), std::string::npos)
-      << paceText(report, 1000);
+  EXPECT_TRUE(tells(paceText(report, 1000), "slow: donut took 2e+03 ms in its longest step"));
 }
 
 TEST_F(Report, DoubtsADepthThatNoArmReaches) {
   RunReport report = sample();
-  EXPECT_EQ(summary(report).find("must be in m"), std::string::npos) << summary(report);
+  EXPECT_FALSE(tells(summary(report), "must be in m"));
   report.models[0].contact.add(true, 2.7, 1.5, 1e-3, 0);
-  EXPECT_NE(
-      summary(report).find("ball reports a depth of 2.7 m, deeper than an arm reaches: depth_m must be in m (if it "
-                           "is in mm, the depth was 0.0027 m)"),
-      std::string::npos)
-      << summary(report);
+  EXPECT_TRUE(tells(summary(report),
+                    "ball reports a depth of 2.7 m, deeper than an arm reaches: depth_m must be in m (if it "
+                    "is in mm, the depth was 0.0027 m)"));
 }
 
 TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
@@ -385,16 +373,16 @@ TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
   ASSERT_TRUE(drawRun(sample(), samples, notes, file("run.svg")));
   std::string svg = read(file("run.svg"));
   for (const char* words : {"ring is silenced", ", left<", "mm drawn at the bottom edge"})
-    EXPECT_NE(svg.find(words), std::string::npos) << words;
-  EXPECT_EQ(svg.find("beyond the picture"), std::string::npos);
+    EXPECT_TRUE(tells(svg, words));
+  EXPECT_FALSE(tells(svg, "beyond the picture"));
   for (Sample& sample : samples) sample.depth_m = -0.036;
   ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
-  EXPECT_NE(read(file("run.svg")).find("(no contact: distance from the nearest model)"), std::string::npos);
+  EXPECT_TRUE(tells(read(file("run.svg")), "(no contact: distance from the nearest model)"));
   for (Sample& sample : samples) sample.depth_m = std::nan(""), sample.model = -1;
   ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
   svg = read(file("run.svg"));
-  EXPECT_NE(svg.find("no model was near enough to be traced"), std::string::npos);
-  EXPECT_EQ(svg.find("1e-0"), std::string::npos) << "an axis of nothing but zeros";
+  EXPECT_TRUE(tells(svg, "no model was near enough to be traced"));
+  EXPECT_FALSE(tells(svg, "1e-0")) << "an axis of nothing but zeros";
 }
 
 TEST_F(Report, SaysWhenThereIsNothingToDraw) {
