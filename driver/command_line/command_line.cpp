@@ -19,10 +19,6 @@ Option Option::required() const {
   return Option(option_->required());
 }
 
-Option Option::expected(int count) const {
-  return Option(option_->expected(count));
-}
-
 Option Option::expected(int least, int most) const {
   return Option(option_->expected(least, most));
 }

@@ -34,7 +34,6 @@ class Option {
 
   // Rules. Each returns the option, so that the next rule can follow.
   Option required() const;
-  Option expected(int count) const;            ///< takes this many values
   Option expected(int least, int most) const;  ///< takes from `least` to `most` values
   Option delimiter(char between) const;        ///< splits one word into several values
   Option oneValueEach() const;                 ///< may be repeated, and never takes the words that follow its value

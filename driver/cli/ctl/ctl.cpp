@@ -298,10 +298,10 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
     if (options->seconds) json["seconds"] = *options->seconds;
   });
   move.addOption("model", options->model, "name of the model").required();
-  move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
+  move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3, 3);
   move.addOption("--orientation", options->orientation,
                  "w x y z, a unit quaternion; default: the model keeps its orientation")
-      .expected(4);
+      .expected(4, 4);
   move.addOption("--seconds", options->seconds,
                  "duration of the motion [s]; the daemon takes longer if this would be too fast; default: a speed of "
                  "at most 0.2 m/s");

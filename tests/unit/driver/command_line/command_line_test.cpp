@@ -31,7 +31,7 @@ struct Example {
     draw.addOption("--scale", scale, "its scale").within(0.5, 2).showDefault();
     draw.addOption("--copies", copies, "how many").wholeWithin(1, 9);
     draw.addOption("--angle", angle, "its angle [rad]");
-    draw.addOption("--corner", corner, "x y").expected(2).needs("--angle");
+    draw.addOption("--corner", corner, "x y").expected(2, 2).needs("--angle");
     draw.addOption("--weights", weights, "numbers").delimiter(',').oneValueEach();
     draw.addFlag("-q,--quiet", quiet, "say nothing").excludes("--copies");
     draw.addOption("--delay", delay, "how long to wait [s]; default: 0").within(0, 5);
@@ -40,7 +40,7 @@ struct Example {
       return word.find('/') == std::string::npos ? "" : "expected letters";
     });
     move.addOption("file", file, "file to move").required();
-    move.addOption("--to", to, "x y z [m], world frame").required().expected(3);
+    move.addOption("--to", to, "x y z [m], world frame").required().expected(3, 3);
     draw.callback([this] { ++calls; });
   }
 
