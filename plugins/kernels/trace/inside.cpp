@@ -62,7 +62,7 @@ Foot Tracer::describe(int track, const Vector3d& p, int evaluations) const noexc
   foot.evaluations = evaluations;
   foot.status = local.converged ? FootStatus::kNearest : FootStatus::kDegraded;
   foot.on_edge = local.sides != 0;
-  if (local.sides != 0 || !local.regular) [[unlikely]]
+  if (local.sides != 0 || !local.regular || !model_.hasArea()) [[unlikely]]
     decideSide(track, p, foot);
   return foot;
 }
@@ -72,7 +72,7 @@ void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept
   const Patch& piece = model_.patch(tracks_[track].patch);
   const LocalFoot& local = tracks_[track].foot;
   const Vector3d r = p - local.S;
-  if (!model_.hasArea()) {  // it has no normal, and an arbitrary one would pull a hand from anywhere
+  if (!model_.hasArea()) {  // its normal, if there is one, is arbitrary, and would pull a hand from anywhere
     foot.normal = foot.distance > kTouching ? Vector3d(r / foot.distance) : Vector3d(0, 0, 1);
     foot.depth = foot.behind = -foot.distance;
     return;

@@ -139,13 +139,15 @@ TEST(Model, WithoutAnyAreaIsTracedAndNeverTouched) {
   EXPECT_FALSE(Model({flat({0, 0, 0}, {1e-320, 0, 0}, {0, 1e-320, 0})}).hasArea()) << "it is a point";
   const spline::SurfaceData dot = flat({0, 0, 0.1}, {0, 0, 0.1}, {0, 0, 0.1});
   const spline::SurfaceData line = flat({0, 0, 0.1}, {0, 0, 0.1}, {0.02, 0.03, 0.15});
-  for (const spline::SurfaceData& thin : {dot, line})
+  const spline::SurfaceData strip = flat({0, 0, 0.1}, {5e-11, 0, 0.1}, {0, 0.1, 0.1});  // it has a normal
+  for (const spline::SurfaceData& thin : {dot, line, strip})
     for (const auto sides : {contact::Sides::kFront, contact::Sides::kBack, contact::Sides::kBoth})
       for (const double hysteresis : {0.0, 1.0}) {
         const Model model({thin});
         Hand hand{model};
         hand.options = holding(sides, hysteresis);
-        const Vector3d a = thin.points[0], way = thin.points[3] - a;
+        const Vector3d a = thin.points[0], way = thin.points[1] - a, middle = (a + thin.points[3]) / 2;
+        for (const double side : {-0.03, 0.03}) EXPECT_LE(hand.at(middle + Vector3d(0, 0, side)).depth, 0) << side;
         for (int i = 0; i < 1000; ++i) {  // round it, past it and through it
           const Vector3d p = a + 1e-4 * (i - 500) * Vector3d(std::cos(0.05 * i), std::sin(0.05 * i), 0.3);
           const double along = way.squaredNorm() > 0 ? (p - a).dot(way) / way.squaredNorm() : 0;
