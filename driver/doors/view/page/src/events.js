@@ -2,13 +2,13 @@
 /** The list of what happened, newest first: orders, faults, contacts, clicks, marks, and models and programs that came or
  * left. */
 import {clock, element, short} from './format.js';
-import {reader} from './rows.js';
+import {readAll, reader} from './rows.js';
 
 const kMost = 300;
 const kOrders = ['', 'enabled', 'disabled', 'moved', 'parameter set', 'fault cleared', 'held', 'added', 'removed', 'computed less accurately', 'overran', 'motors cut', 'led', 'no longer led'];
 /** Numbers of the orders that are not listed: events report the same, or the servo itself gave them. */
 const kToldAsEvents = new Set([5, 6, 7, 8, 9, 10, 12, 13]);
-const kHeld = 8; // number of the fault of an arm that a person holds; it is not shown as a failure
+export const kHeld = 8; // number of the fault of an arm that a person holds; it is not shown as a failure
 const kOfArm = new Set([5, 6, 11]);
 const kFaults = ['no fault any more', 'a force or position was not a number', 'the device is gone', 'the device reports a fault', 'no new sample came', 'the tip was too fast',
   'too many ticks were missed', 'not calibrated', 'held', 'a tick did not end', 'a motor is too hot', 'the position jumped', 'its orientation is not a unit quaternion'];
@@ -46,7 +46,7 @@ export class Events {
     this.devices = (about.devices ?? []).map((d) => d.name);
     this.period = 1 / (about.rate_hz || 1000);
     const columns = about.columns ?? {}, readers = (stream, names) => Object.fromEntries(names.map((n) => [n, reader(columns[stream] ?? [], n)]));
-    this.read = readers('orders', ['tick', 'kind', 'target', 'value']);
+    this.order = readers('orders', ['tick', 'kind', 'target', 'value']);
     this.event = readers('events', ['tick', 't', 'kind', 'model', 'probe', 'code', 'value']);
     this.mark = readers('marks', ['t', 'model', 'text']);
     this.later = []; // models that came during a recording, in the order of their ticks
@@ -75,17 +75,17 @@ export class Events {
 
   orders(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const at = i * rowBytes, kind = this.read.kind(view, at), target = this.read.target(view, at), tick = this.read.tick(view, at);
+      const {tick, kind, target, value} = readAll(this.order, view, i * rowBytes);
       if (this.told && kToldAsEvents.has(kind)) continue;
       const whose = kOfArm.has(kind) ? this.devices[target] ?? `arm ${target}` : this.name(target, tick);
-      const value = kind === 4 ? ` to ${Number(this.read.value(view, at).toPrecision(4))}` : '';
-      this.add(tick * this.period, kind === 11 ? 'fault' : 'order', `${whose}: ${kOrders[kind] ?? `order ${kind}`}${value}`);
+      const to = kind === 4 ? ` to ${Number(value.toPrecision(4))}` : '';
+      this.add(tick * this.period, kind === 11 ? 'fault' : 'order', `${whose}: ${kOrders[kind] ?? `order ${kind}`}${to}`);
     }
   }
 
   events(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const e = Object.fromEntries(Object.entries(this.event).map(([name, read]) => [name, read(view, i * rowBytes)]));
+      const e = readAll(this.event, view, i * rowBytes);
       const name = this.kinds[e.kind] ?? `event ${e.kind}`;
       if (name === 'mark') continue; // marks() tells it
       const said = kEvents[name] ?? {sort: 'order', text: () => name.replaceAll('_', ' ')};
@@ -96,9 +96,8 @@ export class Events {
 
   marks(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const at = i * rowBytes;
-      if (this.mark.model(view, at) >= 0) continue; // it describes a model
-      this.add(this.mark.t(view, at), 'mark', this.mark.text(view, at));
+      const {t, model, text} = readAll(this.mark, view, i * rowBytes);
+      if (!(model >= 0)) this.add(t, 'mark', text); // others describe a model
     }
   }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 /** Formats numbers for people, and makes elements of the page. */
 
+/** Returns the element of the page with an id. */
+export const $ = (id) => document.getElementById(id);
+
 export const norm = (v) => Math.hypot(...v);
 export const fileName = (path) => (path ?? '').split('/').pop();
 

@@ -2,9 +2,9 @@
 /** The page of hapticd-view. It passes the messages of the connection on to the scene, the plots and the panels. */
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
-import {Events} from './events.js';
+import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
-import {element, fileName, norm, save, short, themeColor} from './format.js';
+import {$, element, fileName, norm, save, short, themeColor} from './format.js';
 import {Hand} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -14,7 +14,6 @@ import {Sound} from './sound.js';
 import {endText} from './stops.js';
 import {Timeline} from './timeline.js';
 
-const $ = (id) => document.getElementById(id);
 const kFullStain = 0.003; // m: depth of the strongest colour
 const kNoticeMs = 6000;
 const kHandStiffness = 500; // N/m: stiffness of the hand if the device file gives none
@@ -23,7 +22,6 @@ const kGuided = 7; // value of hand.script for a hand that a program leads
 const kStopMs = 3000; // time after which the question "End the run?" is taken back
 /** Elements that use the space key themselves; everywhere else it holds the arms. */
 const kTakesSpace = 'input:not([type=number], [type=range]), textarea, select';
-const kHeldFault = 8; // number of the fault of an arm that a person holds
 
 /** Returns the largest force [N] that an arm may get, or null if it is unknown. */
 function greatestForce(about, arm) {
@@ -249,7 +247,7 @@ class Page {
       if (!this.hand.used) view.fit();
     }
     this.events.look(now);
-    this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeldFault));
+    this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeld));
     const first = now.arms[0]?.now;
     now.arms.forEach((arm, i) => { this.readForces[i].value = short(arm.now ? norm(arm.now.sent) : NaN); });
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
@@ -271,10 +269,10 @@ class Page {
   /** Returns the speed of the tip [m/s]. It is computed from positions, because the daemon estimates a velocity only if
    * a model needs one. */
   #speed(arm) {
-    const {tick, t} = this.now.tick, before = this.before;
+    const {t} = this.now.tick, before = this.before;
     if (arm && (!before || t - before.t > 0.02 || t < before.t)) {
       const moved = before && t > before.t ? norm(arm.position.map((p, i) => p - before.position[i])) / (t - before.t) : 0;
-      this.before = {t, tick, position: arm.position, speed: moved};
+      this.before = {t, position: arm.position, speed: moved};
     }
     return this.before?.speed ?? 0;
   }

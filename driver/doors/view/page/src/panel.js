@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 /** The list of models, with a form for their live parameters. The fields come from the plugin's own table, with unit,
  * range and documentation. A change that a hand may feel suddenly needs consent. */
-import {element, exact, grouped, short} from './format.js';
+import {$, element, exact, grouped, short} from './format.js';
 import {colourOf, swatchOf} from './colours.js';
 
 const kOpenModels = 3; // if there are more models, their parameters are folded
-
-const $ = (id) => document.getElementById(id);
 
 /** Asks whether the person who holds the arm agrees. */
 function consent(text) {

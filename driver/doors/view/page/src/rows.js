@@ -11,7 +11,6 @@ const kReaders = {
   s96: (view, at) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, 96)).replace(/\0.*/s, ''),
 };
 const kKeptSeconds = 11, kMostBytes = 24 << 20;
-const kQuaternion = ['w', 'x', 'y', 'z'];
 
 /** Returns a function that reads a column of the row that begins at `at`. If there is no such column, the function
  * returns NaN. */
@@ -54,21 +53,16 @@ export class Table {
   at(row) { return row % this.capacity * this.rowBytes; }
 }
 
-function armReaders(columns, prefix, device) {
-  return {
-    name: device.name,
-    info: device.info,
-    joints: Array.from({length: device.info?.joint_count ?? 0}, (_, i) => reader(columns, `${prefix}q${i}`)),
-    position: vectorReader(columns, prefix),
-    orientation: vectorReader(columns, `${prefix}q`, kQuaternion),
-    velocity: vectorReader(columns, `${prefix}v`),
-    force: vectorReader(columns, `${prefix}f`),
-    sent: vectorReader(columns, `${prefix}sent_f`),
-    fault: reader(columns, `${prefix}fault`),
-    valid: reader(columns, `${prefix}valid`),
-    buttons: reader(columns, `${prefix}buttons`),
-    now: null,
+/** Reads a row: the value of each reader under its name. */
+export const readAll = (readers, view, at) => Object.fromEntries(Object.entries(readers).map(([name, read]) => [name, read(view, at)]));
+
+function armOf(columns, prefix, {name, info}) {
+  const joints = Array.from({length: info?.joint_count ?? 0}, (_, i) => `q${i}`);
+  const read = {
+    joints: vectorReader(columns, prefix, joints), position: vectorReader(columns, prefix), sent: vectorReader(columns, `${prefix}sent_f`),
+    fault: reader(columns, `${prefix}fault`), valid: reader(columns, `${prefix}valid`),
   };
+  return {name, info, read, now: null};
 }
 
 /** The present state: the newest tick, contacts and poses. They are taken from each batch of rows as it comes. */
@@ -79,21 +73,18 @@ export class Now {
     this.about = about;
     this.tables = streams.map((s) => new Table(s.name, columns(s.name), s.row_bytes,
       Math.max(64, Math.min(Math.ceil(rows), Math.floor(kMostBytes / s.row_bytes)))));
-    this.arms = (about.devices ?? []).map((device, i) => armReaders(columns('ticks'), `arm${i}_`, device));
-    this.tick = {t: NaN, tick: -1, depth: NaN, lateness: NaN, compute: NaN};
+    this.arms = (about.devices ?? []).map((device, i) => armOf(columns('ticks'), `arm${i}_`, device));
+    this.tick = {t: NaN, tick: -1, depth: NaN};
     this.contacts = new Map(); // "model/probe" -> contact
     this.poses = new Map(); // model -> pose
     const t = columns('ticks'), c = columns('contacts'), p = columns('poses');
-    this.read = {
-      tick: reader(t, 'tick'), t: reader(t, 't'), depth: reader(t, 'depth'), lateness: reader(t, 'lateness_us'),
-      compute: reader(t, 'compute_us'),
-    };
+    this.read = {tick: reader(t, 'tick'), t: reader(t, 't'), depth: reader(t, 'depth')};
     this.contact = {
       tick: reader(c, 'tick'), model: reader(c, 'model'), probe: reader(c, 'probe'), depth: reader(c, 'depth'),
-      feature: reader(c, 'feature'), status: reader(c, 'status'), point: vectorReader(c, 'p'),
-      normal: vectorReader(c, 'n'), force: vectorReader(c, 'f'),
+      feature: reader(c, 'feature'), point: vectorReader(c, 'p'), normal: vectorReader(c, 'n'),
     };
-    this.pose = {model: reader(p, 'model'), position: vectorReader(p, ''), orientation: vectorReader(p, 'q', kQuaternion)};
+    this.model = reader(p, 'model');
+    this.pose = {position: vectorReader(p, ''), orientation: vectorReader(p, 'q', ['w', 'x', 'y', 'z'])};
   }
 
   table(name) { return this.tables.find((t) => t.name === name); }
@@ -116,23 +107,17 @@ export class Now {
   }
 
   #ticks(view, at) {
-    const {read, tick} = this;
-    for (const name of Object.keys(read)) tick[name] = read[name](view, at);
+    this.tick = readAll(this.read, view, at);
     for (const arm of this.arms) {
-      const number = (name) => arm[name](view, at);
-      arm.now = {
-        position: number('position'), orientation: number('orientation'), velocity: number('velocity'),
-        force: number('force'), sent: number('sent'), fault: number('fault'), valid: number('valid') === 1,
-        buttons: number('buttons'), joints: arm.joints.map((read1) => read1(view, at)),
-      };
+      arm.now = readAll(arm.read, view, at);
+      arm.now.valid = arm.now.valid === 1;
     }
   }
 
   #contacts(view, count, rowBytes) {
     const newest = this.contact.tick(view, (count - 1) * rowBytes);
     for (let i = count - 1; i >= 0 && this.contact.tick(view, i * rowBytes) === newest; --i) {
-      const c = {};
-      for (const name of Object.keys(this.contact)) c[name] = this.contact[name](view, i * rowBytes);
+      const c = readAll(this.contact, view, i * rowBytes);
       this.contacts.set(`${c.model}/${c.probe}`, c);
     }
   }
@@ -140,10 +125,10 @@ export class Now {
   #poses(view, count, rowBytes) {
     const seen = new Set();
     for (let i = count - 1; i >= 0; --i) {
-      const at = i * rowBytes, model = this.pose.model(view, at);
+      const at = i * rowBytes, model = this.model(view, at);
       if (seen.has(model)) continue;
       seen.add(model);
-      this.poses.set(model, {position: this.pose.position(view, at), orientation: this.pose.orientation(view, at)});
+      this.poses.set(model, readAll(this.pose, view, at));
       if (seen.size >= this.poses.size && count - i > 256) break;
     }
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /** The controls for the playback of a recording: play, pause, place, speed, loop. */
-
-const $ = (id) => document.getElementById(id);
+import {$} from './format.js';
 
 export class Timeline {
   constructor(ask) {
