@@ -15,6 +15,12 @@ const kSamples = 4000; // number of poses from which the box of the workspace is
 
 const vector = (list) => new Vector3(...(list ?? [0, 0, 0]));
 
+/** Returns a frame at a position, with an orientation w, x, y, z; either may be left out. */
+function frameAt(position, orientation) {
+  const [w, x, y, z] = orientation ?? [1, 0, 0, 0];
+  return new Matrix4().compose(vector(position), new Quaternion(x, y, z, w).normalize(), new Vector3(1, 1, 1));
+}
+
 function parametersOf(device) {
   const all = new Map((device.parameters ?? []).map((p) => [p.id, p]));
   return {
@@ -37,16 +43,17 @@ class Phantom {
 
   #out(q1, reach, height) { return new Vector3(reach * Math.sin(q1), height, reach * Math.cos(q1)); }
 
-  tip([q1, q2, q3]) {
-    return this.shoulder.clone().add(this.#out(q1, this.upper * Math.cos(q2), this.upper * Math.sin(q2)))
-      .add(this.#out(q1, this.fore * Math.sin(q3), -this.fore * Math.cos(q3)));
+  /** Returns the elbow, the tip, and the direction from the elbow to the tip. */
+  #places([q1, q2, q3]) {
+    const elbow = this.shoulder.clone().add(this.#out(q1, this.upper * Math.cos(q2), this.upper * Math.sin(q2)));
+    const along = this.#out(q1, Math.sin(q3), -Math.cos(q3));
+    return {elbow, along, tip: elbow.clone().addScaledVector(along, this.fore)};
   }
 
-  links([q1, q2, q3]) {
-    const shoulder = this.shoulder.clone(), thick = 0.02 * this.upper;
-    const along = this.#out(q1, Math.sin(q3), -Math.cos(q3));
-    const elbow = shoulder.clone().add(this.#out(q1, this.upper * Math.cos(q2), this.upper * Math.sin(q2)));
-    const tip = elbow.clone().addScaledVector(along, this.fore);
+  tip(q) { return this.#places(q).tip; }
+
+  links(q) {
+    const shoulder = this.shoulder.clone(), thick = 0.02 * this.upper, {elbow, along, tip} = this.#places(q);
     const links = [
       link(shoulder.clone().add(new Vector3(0, -0.35 * this.upper, 0)), shoulder, 1.9 * thick),
       link(shoulder, elbow, thick), link(elbow, tip, 0.8 * thick, kPointed),
@@ -65,9 +72,7 @@ class Chain {
   constructor(of) {
     const dh = of.list('arm.dh') ?? [];
     this.rows = Array.from({length: Math.floor(dh.length / 4)}, (_, i) => dh.slice(4 * i, 4 * i + 4));
-    const [w, x, y, z] = of.list('arm.base_orientation') ?? [1, 0, 0, 0];
-    const base = of.list('arm.base_position') ?? of.list('arm.origin');
-    this.base = new Matrix4().compose(vector(base), new Quaternion(x, y, z, w).normalize(), new Vector3(1, 1, 1));
+    this.base = frameAt(of.list('arm.base_position') ?? of.list('arm.origin'), of.list('arm.base_orientation'));
     this.tool = vector(of.list('arm.tool_position'));
   }
 
@@ -115,8 +120,7 @@ class Delta {
     const [a, , c, , , f, r, s] = of.list('arm.lengths') ?? kDelta.lengths;
     Object.assign(this, {a, c, f, r, s});
     this.angles = of.list('arm.angles') ?? kDelta.angles;
-    const [w, x, y, z] = of.list('arm.base_orientation') ?? [1, 0, 0, 0];
-    this.base = new Matrix4().compose(vector(of.list('arm.origin')), new Quaternion(x, y, z, w).normalize(), new Vector3(1, 1, 1));
+    this.base = frameAt(of.list('arm.origin'), of.list('arm.base_orientation'));
     this.toArm = this.base.clone().invert();
   }
 
@@ -141,9 +145,7 @@ export class ArmModel {
   constructor(device, info) {
     const of = parametersOf(device), kind = kKinds[device?.module]?.[of.number('arm.kind')];
     this.mechanism = kind === 'phantom' ? new Phantom(of) : kind === 'chain' ? new Chain(of) : kind === 'delta' ? new Delta(of) : null;
-    const {position, orientation} = device?.mount ?? {};
-    const [w, x, y, z] = orientation ?? [1, 0, 0, 0];
-    this.mount = new Matrix4().compose(vector(position), new Quaternion(x, y, z, w), new Vector3(1, 1, 1));
+    this.mount = frameAt(device?.mount?.position, device?.mount?.orientation);
     this.toDevice = this.mount.clone().invert();
     this.info = info ?? {};
     this.far = device?.admittance ? kFarBehind : kFar;
