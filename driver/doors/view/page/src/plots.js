@@ -27,18 +27,17 @@ class Extremes {
   }
 
   add(view, at) {
-    const value = this.read(view, at), t = this.readTime(view, at);
-    if (Number.isFinite(value)) this.newest = value;
+    const value = this.read(view, at), t = this.readTime(view, at), known = Number.isFinite(value);
+    if (known) this.newest = value;
     const bucket = Math.floor(t / kSeconds * kBuckets), last = this.times.length - 1;
     if (bucket === this.bucket) {
-      if (value < this.low[last] || this.low[last] === null) this.low[last] = Number.isFinite(value) ? value : this.low[last];
-      if (value > this.high[last] || this.high[last] === null) this.high[last] = Number.isFinite(value) ? value : this.high[last];
+      if (known) this.low[last] = Math.min(this.low[last] ?? value, value), this.high[last] = Math.max(this.high[last] ?? value, value);
       return;
     }
     this.bucket = bucket;
     this.times.push(t);
-    this.low.push(Number.isFinite(value) ? value : null);
-    this.high.push(Number.isFinite(value) ? value : null);
+    this.low.push(known ? value : null);
+    this.high.push(known ? value : null);
     while (this.times.length > kBuckets + 2) this.times.shift(), this.low.shift(), this.high.shift();
   }
 }
@@ -48,6 +47,14 @@ function axis(size, format) {
     stroke: () => themeColor('--faint'), grid: {stroke: () => themeColor('--line'), width: 1}, ticks: {show: false},
     font: '11px system-ui, sans-serif', size, gap: 3, values: format,
   };
+}
+
+/** Draws a line in a colour of the theme. */
+function line(ctx, color, from, to) {
+  ctx.strokeStyle = themeColor(color);
+  ctx.beginPath();
+  ctx.moveTo(...from), ctx.lineTo(...to);
+  ctx.stroke();
 }
 
 class Plot {
@@ -96,20 +103,14 @@ class Plot {
     ctx.clip();
     if (this.limit !== null) {
       const y = u.valToPos(this.limit, 'y', true);
-      ctx.strokeStyle = themeColor('--bad');
       ctx.setLineDash([5, 4]);
-      ctx.beginPath();
-      ctx.moveTo(left, y), ctx.lineTo(left + width, y);
-      ctx.stroke();
+      line(ctx, '--bad', [left, y], [left + width, y]);
       ctx.setLineDash([]);
     }
     for (const {t, kind} of this.plots.marks) {
       const x = u.valToPos(t, 'x', true);
-      ctx.strokeStyle = themeColor(kColours[kind] ?? '--faint');
       ctx.globalAlpha = kind === 'fault' || kind === 'mark' ? 0.9 : 0.45;
-      ctx.beginPath();
-      ctx.moveTo(x, top), ctx.lineTo(x, top + height);
-      ctx.stroke();
+      line(ctx, kColours[kind] ?? '--faint', [x, top], [x, top + height]);
     }
     ctx.restore();
   }
