@@ -19,7 +19,7 @@ function consent(text) {
  * 0 to 1e5 for a value of 800. */
 function sliderSpan(parameter, value) {
   const about = Math.max(Math.abs(value), (parameter.max - parameter.min) * 1e-3, 1e-9);
-  return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0, parameter.min), max: Math.min(parameter.max, 4 * about)};
+  return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0), max: Math.min(parameter.max, 4 * about)};
 }
 
 /** Returns the words about a model that is not drawn, or drawn coarser than it is felt; '' about any other. */
@@ -126,30 +126,32 @@ export class Panel {
     const number = element('input', {type: 'number', id, step: parameter.whole ? 1 : 'any', min: parameter.min, max: parameter.max, value: value ?? ''});
     const slider = element('input', {type: 'range', step: parameter.whole ? 1 : 'any', 'aria-label': parameter.id});
     const wrong = element('p', {class: 'wrong', hidden: true});
-    const set = async (wanted) => {
+    const set = async () => {
       wrong.hidden = true;
-      if (!(wanted >= parameter.min && wanted <= parameter.max)) {
-        wrong.textContent = `${number.value === '' ? 'no number is given' : `${number.value} is out of range`}, expected ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}`;
-        wrong.hidden = false;
-        this.#refresh(model, parameter, true);
-        return;
-      }
-      const before = Number.isFinite(parameter.value) ? ` from ${short(parameter.value)}` : '';
-      const agreed = !parameter.safety || await consent(`${parameter.label ?? parameter.id} of ${model.name} changes${before} to ${short(wanted)} ${parameter.unit}. A hand may feel that suddenly.`);
-      const answer = agreed ? await this.ask({do: 'set', model: model.name, parameter: parameter.id, value: wanted, ...(parameter.safety ? {consent: true} : {})}) : {ok: false};
-      if (answer.ok) parameter.value = wanted;
-      else if (answer.error) wrong.textContent = answer.error, wrong.hidden = false;
+      wrong.textContent = await this.#set(model, parameter, number);
+      wrong.hidden = wrong.textContent === '';
       this.#refresh(model, parameter, true);
     };
-    number.onchange = () => set(number.valueAsNumber);
+    number.onchange = set;
     slider.oninput = () => { number.value = Number(Number(slider.value).toPrecision(4)); };
-    slider.onchange = () => set(number.valueAsNumber);
+    slider.onchange = set;
     const consents = parameter.safety ? ' A hand may feel a change suddenly, so the page asks first.' : '';
     const title = parameter.doc ? `${parameter.doc} ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}${consents}` : parameter.id;
-    const field = element('div', {class: parameter.safety ? 'field safety' : 'field', data: {parameter: parameter.id}},
+    return element('div', {class: parameter.safety ? 'field safety' : 'field', data: {parameter: parameter.id}},
       element('label', {htmlFor: id, title}, parameter.label ?? parameter.id), ...(Number.isFinite(value) ? [slider] : []), number,
       element('span', {class: 'unit'}, parameter.unit), wrong);
-    return field;
+  }
+
+  /** Sets a parameter to the number in its field. Returns why it was not set; '' if it was, or if the person at the arm does not agree. */
+  async #set(model, parameter, {value: typed, valueAsNumber: wanted}) {
+    if (!(wanted >= parameter.min && wanted <= parameter.max))
+      return `${typed === '' ? 'no number is given' : `${typed} is out of range`}, expected ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}`;
+    const before = Number.isFinite(parameter.value) ? ` from ${short(parameter.value)}` : '';
+    const agreed = !parameter.safety || await consent(`${parameter.label ?? parameter.id} of ${model.name} changes${before} to ${short(wanted)} ${parameter.unit}. A hand may feel that suddenly.`);
+    if (!agreed) return '';
+    const answer = await this.ask({do: 'set', model: model.name, parameter: parameter.id, value: wanted, ...(parameter.safety ? {consent: true} : {})});
+    if (answer.ok) parameter.value = wanted;
+    return answer.ok ? '' : answer.error;
   }
 
   /** Shows the present value, unless somebody is typing another one. */
