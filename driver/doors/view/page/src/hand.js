@@ -10,7 +10,21 @@ const kWheelStep = 0.0015; // m per notch of the wheel
 const kPress = 0.004; // m: depth of the wish behind the surface of the model under the pointer
 const kTurn = 0.06; // rad per press of a key
 const kLost = 'The connection is lost: no hand can be led until it is back';
+const kHandStiffness = 500; // N/m: stiffness of the hand if the device file gives none
+const kShareOfLimit = 0.8; // the hand pulls with at most this share of the arm's largest force, so that shapes can keep the tip outside
 const kAgainMs = 50; // the wish is sent again after this time while the hand is led
+
+/** Returns the largest force [N] that an arm may get, or null if it is unknown. */
+export function greatestForce(about, arm) {
+  const bounds = [about.scene?.devices?.[arm]?.limits?.force, about.devices?.[arm]?.info?.max_force].map(Number).filter((force) => force > 0);
+  return bounds.length > 0 ? Math.min(...bounds) : null;
+}
+
+/** Returns how far [m] the spring of a simulated hand stretches under the force that the arm can hold against. */
+export function handReach(device, limit) {
+  const stiffness = Number(device?.parameters?.find((p) => p.id === 'hand.stiffness')?.number ?? kHandStiffness);
+  return limit > 0 && stiffness > 0 ? kShareOfLimit * limit / stiffness : Infinity;
+}
 
 /** Makes the message with a target in the daemon's form: f64 position[3], orientation[4], linear[3], angular[3], time.
  * The time 0 means: when the daemon reads it. */

@@ -5,7 +5,7 @@ import {Connection} from './connection.js';
 import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
 import {$, element, fileName, norm, save, short, themeColor} from './format.js';
-import {Hand} from './hand.js';
+import {greatestForce, Hand, handReach} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
 import {Now} from './rows.js';
@@ -16,24 +16,10 @@ import {Timeline} from './timeline.js';
 
 const kFullStain = 0.003; // m: depth of the strongest colour
 const kNoticeMs = 6000;
-const kHandStiffness = 500; // N/m: stiffness of the hand if the device file gives none
-const kShareOfLimit = 0.8; // the hand pulls with at most this share of the arm's largest force, so that shapes can keep the tip outside
 const kGuided = 7; // value of hand.script for a hand that a program leads
 const kStopMs = 3000; // time after which the question "End the run?" is taken back
 /** Elements that use the space key themselves; everywhere else it holds the arms. */
 const kTakesSpace = 'input:not([type=number], [type=range]), textarea, select';
-
-/** Returns the largest force [N] that an arm may get, or null if it is unknown. */
-function greatestForce(about, arm) {
-  const bounds = [about.scene?.devices?.[arm]?.limits?.force, about.devices?.[arm]?.info?.max_force].map(Number).filter((force) => force > 0);
-  return bounds.length > 0 ? Math.min(...bounds) : null;
-}
-
-/** Returns how far [m] the spring of a simulated hand stretches under the force that the arm can hold against. */
-function handReach(device, limit) {
-  const stiffness = Number(device?.parameters?.find((p) => p.id === 'hand.stiffness')?.number ?? kHandStiffness);
-  return limit > 0 && stiffness > 0 ? kShareOfLimit * limit / stiffness : Infinity;
-}
 
 class Page {
   constructor() {
@@ -123,40 +109,56 @@ class Page {
     this.identity = identity;
     this.whyLost = null;
     this.now = new Now(about, streams);
-    const ticks = this.now.table('ticks'), arms = this.now.arms.map(({name}, i) => ({name, limit: greatestForce(about, i)}));
-    this.plots = ticks ? new Plots($('plots'), ticks, {arms, period: 1 / (about.rate_hz || 1000)}) : null;
-    this.readForces = arms.map(() => element('output', {}, '–'));
-    for (const old of document.querySelectorAll('.of-arm')) old.remove();
-    $('readouts').prepend(...arms.map(({name}, i) => element('div', {class: 'of-arm'},
-      element('dt', {title: name}, arms.length > 1 ? name : 'Force'), element('dd', {}, this.readForces[i], element('small', {}, 'N')))));
-    this.events = new Events($('events'), about, (t, kind) => {
-      if (kind !== 'contact') this.plots?.mark(t, kind);
-      this.sound.play(kind);
-    });
-    this.view.models.clear();
-    this.features.clear();
-    this.drawn.clear();
-    this.view.arms(this.now.arms.length);
-    this.armModels = this.now.arms.map((_, i) => new ArmModel(about.scene?.devices?.[i], about.devices?.[i]?.info));
-    this.fitted = again; // the camera does not move because of a lost connection
-    this.fitWhenTip = false;
-    if (!again) this.hand.used = false;
-    this.panel.folder = about.folder ?? '';
-    $('scene-name').textContent = fileName(about.scene?.file) || hello.name;
-    $('scene-mode').textContent = recorded ? `recording ${fileName(hello.name)}` : control ? 'live' : 'live, looking only';
-    document.title = `${$('scene-name').textContent} · hapticd`;
-    $('run-tools').hidden = !control;
-    this.hand.begin(arms.map((a) => a.name), arms.map((a, i) => handReach(about.scene?.devices?.[i], a.limit)),
+    const names = this.now.arms.map(({name}) => name), limits = names.map((_, i) => greatestForce(about, i));
+    this.#measures(about, names, limits);
+    this.#emptyScene(about, again);
+    this.#title(hello);
+    this.hand.begin(names, limits.map((limit, i) => handReach(about.scene?.devices?.[i], limit)),
       recorded ? 'A recording can only be looked at' : control ? '' : 'This view only looks. To press with the mouse: hapticd run SCENE --view', again);
     this.#invite(again);
     if (!recorded) this.timeline.show(null);
     else if (again) this.timeline.restore();
-    this.view.setWorkspaces((about.scene?.devices ?? []).map((device, i) => ({
-      box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
-    })));
-    $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
     this.#drawModels((about.scene?.models ?? about.models ?? []).map((m, i) => ({...m, index: i})));
     if (this.pendingList) this.#list(this.pendingList); // the list came before there was a view
+  }
+
+  /** Makes what shows numbers and events: the forces, the plots with the columns to pick from, and the list. @param limits [N] of the arms */
+  #measures(about, names, limits) {
+    const ticks = this.now.table('ticks'), arms = names.map((name, i) => ({name, limit: limits[i]}));
+    this.plots = ticks ? new Plots($('plots'), ticks, {arms, period: 1 / (about.rate_hz || 1000)}) : null;
+    $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
+    this.readForces = names.map(() => element('output', {}, '–'));
+    for (const old of document.querySelectorAll('.of-arm')) old.remove();
+    $('readouts').prepend(...names.map((name, i) => element('div', {class: 'of-arm'},
+      element('dt', {title: name}, names.length > 1 ? name : 'Force'), element('dd', {}, this.readForces[i], element('small', {}, 'N')))));
+    this.events = new Events($('events'), about, (t, kind) => {
+      if (kind !== 'contact') this.plots?.mark(t, kind);
+      this.sound.play(kind);
+    });
+  }
+
+  /** Takes all models out of the scene, and puts the arms of the run into it. @param again true if the camera and the hand stay as they are */
+  #emptyScene(about, again) {
+    const devices = about.scene?.devices ?? [];
+    this.view.models.clear();
+    this.features.clear();
+    this.drawn.clear();
+    this.view.arms(this.now.arms.length);
+    this.armModels = this.now.arms.map(({info}, i) => new ArmModel(devices[i], info));
+    this.view.setWorkspaces(devices.map((device, i) => ({
+      box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
+    })));
+    this.fitted = again;
+    this.fitWhenTip = false;
+    if (!again) this.hand.used = false;
+  }
+
+  #title({about, name, control, recorded}) {
+    this.panel.folder = about.folder ?? '';
+    $('scene-name').textContent = fileName(about.scene?.file) || name;
+    $('scene-mode').textContent = recorded ? `recording ${fileName(name)}` : control ? 'live' : 'live, looking only';
+    document.title = `${$('scene-name').textContent} · hapticd`;
+    $('run-tools').hidden = !control;
   }
 
   /** Requests the triangles of new models. */
