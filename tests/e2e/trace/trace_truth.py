@@ -4,16 +4,16 @@
 Usage: trace_truth.py HAPTICD TEST_PLUGINS     prints one line per case; exit 1 when one is off.
 Each case writes a scene, a model and a probe path, runs the program as a user would, and compares every row.
 """
-import csv
-import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program, write
+import traced
+
 HAPTICD, TEST_PLUGINS = sys.argv[1:3]
-failures = 0
 
 
 def sphere(radius):
@@ -30,55 +30,17 @@ def sphere(radius):
             "points": points, "weights": weights}
 
 
-def quad(corner, side_u, side_v, name):
-    add = lambda a, b: [x + y for x, y in zip(a, b)]
-    return {"name": name, "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
-            "points": [corner, add(corner, side_v), add(corner, side_u), add(add(corner, side_u), side_v)]}
-
-
-def box(half):
-    h, d = half, 2 * half
-    return [quad([-h, -h, h], [d, 0, 0], [0, d, 0], "front"), quad([h, -h, -h], [-d, 0, 0], [0, d, 0], "back"),
-            quad([h, -h, h], [0, 0, -d], [0, d, 0], "right"), quad([-h, -h, -h], [0, 0, d], [0, d, 0], "left"),
-            quad([-h, h, h], [d, 0, 0], [0, 0, -d], "top"), quad([-h, -h, -h], [d, 0, 0], [0, 0, d], "bottom")]
-
-
-def trace(surfaces, rows, parameters=None, model_keys=None, servo=None):
-    with tempfile.TemporaryDirectory() as folder:
-        join = lambda name: os.path.join(folder, name)
-        json.dump({"format": "hapticd-model/1", "surfaces": surfaces}, open(join("model.json"), "w"))
-        model = {"name": "thing", "plugin": "nurbs_rigid",
-                 "parameters": {"geometry": "model.json", "stiffness": 1000, "damping": 0, **(parameters or {})}}
-        keys = dict(model_keys or {})
-        if "path_rows" in keys:
-            open(join("path.csv"), "w").write("t,x,y,z,qw,qx,qy,qz\n" + "\n".join(",".join(map(repr, r)) for r in keys.pop("path_rows")))
-            model.update(motion="kinematic", path="path.csv")
-        model.update(keys)
-        json.dump({"hapticd": 1, "servo": servo or {}, "models": [model]}, open(join("scene.yaml"), "w"))
-        with open(join("probe.csv"), "w") as out:
-            out.write("t,x,y,z\n")
-            out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
-        done = subprocess.run([HAPTICD, "trace", join("scene.yaml"), "--probe", join("probe.csv"), "--out", join("out.csv")],
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError(f"exit {done.returncode}: {done.stderr}")
-        result = [{k: (v if k == "model" else float(v)) for k, v in row.items()} for row in csv.DictReader(open(join("out.csv")))]
-        assert len(result) == len(rows), f"{len(result)} rows for {len(rows)} samples"
-        return result
+def trace(surfaces, samples, **keys):
+    return traced.trace(HAPTICD, surfaces, samples, **keys)[0]
 
 
 def says_why_a_model_is_silenced():
     """The plugin answers what is no number; a trace that went on without a word would be taken for good."""
-    global failures
     with tempfile.TemporaryDirectory() as folder:
-        join = lambda name: os.path.join(folder, name)
-        open(join("scene.yaml"), "w").write("hapticd: 1\nmodels:\n  - {name: bad, plugin: misbehaving}\n")
-        open(join("probe.csv"), "w").write("t,x,y,z\n" + "".join(f"{i * 1e-3},0,0.01,0\n" for i in range(100)))
-        done = subprocess.run([HAPTICD, "trace", join("scene.yaml"), "--probe", join("probe.csv"), "--out", join("out.csv")],
-                              capture_output=True, text=True, env=dict(os.environ, HAPTICD_PLUGIN_PATH=TEST_PLUGINS))
-    good = done.returncode == 1 and "model bad" in done.stderr and "silenced" in done.stderr
-    failures += not good
-    print("ok    " if good else f"FAILED {done.returncode} {done.stderr}", "a silenced model is told")
+        scene = write(folder, "scene.yaml", "hapticd: 1\nmodels:\n  - {name: bad, plugin: misbehaving}\n")
+        probe = write(folder, "probe.csv", "t,x,y,z\n" + "".join(f"{i * 1e-3},0,0.01,0\n" for i in range(100)))
+        done = program(HAPTICD, dict(os.environ, HAPTICD_PLUGIN_PATH=TEST_PLUGINS))("trace", scene, "--probe", probe, "--out", os.path.join(folder, "out.csv"))
+    check("a silenced model is told", done.returncode == 1 and "model bad" in done.stderr and "silenced" in done.stderr, done)
 
 
 def vec(row, prefix):
@@ -90,10 +52,7 @@ def norm(v):
 
 
 def report(name, worst, tolerance):
-    global failures
-    bad = not worst <= tolerance
-    failures += bad
-    print(f"{'FAILED' if bad else 'ok':6} {name:58} worst {worst:.3g} m, allowed {tolerance:.3g}")
+    check(name, worst <= tolerance, f"worst {worst:.3g} m, allowed {tolerance:.3g}")
 
 
 def walk(radius_of, ticks=3000, dt=1e-3):
@@ -142,18 +101,18 @@ def main():
     center = (0.2, -0.1, 0.05)
     rows = [[r[0]] + [x + c for x, c in zip(r[1:], center)] for r in walk(lambda t: R - 0.001)]
     q = [0.5, -0.5, 0.5, 0.5]
-    moved = trace([sphere(R)], rows, model_keys={"pose": {"position": list(center), "orientation": q}})
+    moved = trace([sphere(R)], rows, pose={"position": list(center), "orientation": q})
     check_sphere("sphere moved and turned", R, rows, moved, 1e-9, lambda t: center)
 
     at = lambda t: (0.1 * t, 0.05 * t, 0)
     rows = [[r[0]] + [x + c for x, c in zip(r[1:], at(r[0]))] for r in walk(lambda t: R - 0.001)]
     path = [[0, 0, 0, 0, 1, 0, 0, 0], [4, 0.4, 0.2, 0, math.cos(1), 0, math.sin(1), 0]]
-    moving = trace([sphere(R)], rows, model_keys={"path_rows": path})
+    moving = trace([sphere(R)], rows, path=path)
     check_sphere("sphere moving and turning on a path", R, rows, moving, 1e-9, at)
 
     rows = [[i * 1e-3, 0, 0, R + 0.01 + 4e-4 * i] for i in range(1000)]
-    for name, keys in (("that stands", {}), ("on a path", {"path_rows": [[0, 0, 0, 0, 1, 0, 0, 0], [1, 1e-9, 0, 0, 1, 0, 0, 0]]})):
-        far = trace([sphere(R)], rows, model_keys=keys)
+    for name, keys in (("that stands", {}), ("on a path", {"path": [[0, 0, 0, 0, 1, 0, 0, 0], [1, 1e-9, 0, 0, 1, 0, 0, 0]]})):
+        far = trace([sphere(R)], rows, **keys)
         errors = [0 if math.isnan(r["depth"]) else abs(r["depth"] - R + s[3]) for s, r in zip(rows, far)]
         report(f"a model {name} leaves no foot behind", worst_of(errors) if math.isnan(far[-1]["depth"]) else math.inf, 1e-6)
 
@@ -171,18 +130,19 @@ def main():
     check_sphere("found again within 5 ms of a teleport", R, rows[406:], result[406:], 1e-9)
 
     h = 0.04
+    box = traced.block([-h] * 3, [h] * 3)
     rows = [[i * 1e-3, 0.03 * math.sin(i * 5e-3), 0.03 * math.cos(i * 3.3e-3), h - 0.001] for i in range(2000)]
-    result = trace(box(h), rows)
+    result = trace(box, rows)
     report("box face: depth and straight force", worst_of(abs(r["depth"] - 0.001) + norm([a - b for a, b in zip(vec(r, "f"), [0, 0, 1.0])]) / 1000 for r in result), 1e-9)
 
     def outside(p):
         return norm([max(abs(x) - h, 0) for x in p])
     rows = [[i * 1e-3, (h + 0.004) * math.cos(i * 4e-3) * 1.2, (h + 0.004) * math.sin(i * 4e-3) * 1.2, 0.01] for i in range(3140)]
-    result = trace(box(h), rows)
+    result = trace(box, rows)
     errors = [abs(outside(s[1:]) + r["depth"]) for s, r in zip(rows, result) if outside(s[1:]) > 1e-6]
     report("round the outside of a box, over its edges", worst_of(errors), 1e-6)
     says_why_a_model_is_silenced()
-    sys.exit(1 if failures else 0)
+    finish()
 
 
 main()
