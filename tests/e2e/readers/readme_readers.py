@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, write
 
 HAPTICD, SOURCE, CXX = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), sys.argv[3]
 README = open(os.path.join(SOURCE, "README.md")).read()
@@ -20,116 +20,126 @@ SHAPES = open(os.path.join(SOURCE, "driver/docs/writing_a_shape.md")).read()
 SCENES = open(os.path.join(SOURCE, "driver/docs/scenes.md")).read()
 
 
+FLOOR = re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+PUSHES = "report.flags |= HSP_R_PUSHES;"
+
+
 def run(*command, environment=None, **more):
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200, **more)
     return done.returncode, done.stdout + done.stderr
 
 
-def code_of_floor():
-    return re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+def built(folder, code):
+    """Compiles a floor by the README's line. Returns what the compiler says; "": it is built."""
+    write(folder, "floor.cpp", code)
+    line = re.search(r"^    (g\+\+ .* -o my-plugins/floor.so)$", README, re.M)[1].replace("-I driver/include", f"-I {SOURCE}/driver/include")
+    code, said = run("sh", "-c", line.replace("g++", CXX, 1), cwd=folder)
+    return said[-800:] if code else ""
+
+
+def syntax(folder, code, standard="c++20"):
+    """What the compiler says of a source without building it; "": nothing."""
+    file = write(folder, "syntax.cpp", code)
+    code, said = run(CXX, f"-std={standard}", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", file)
+    return said[:1500] if code else ""
 
 
 def own_shape(folder):
     """The floor of the README, compiled with its line, found, checked and felt in its scene."""
-    code = code_of_floor()
-    open(os.path.join(folder, "floor.cpp"), "w").write(code)
-    line = re.search(r"^    (g\+\+ .* -o my-plugins/floor.so)$", README, re.M)[1].replace("-I driver/include", f"-I {SOURCE}/driver/include")
     os.mkdir(os.path.join(folder, "my-plugins"))
-    done = subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, text=True, timeout=200)
-    check("the README's floor compiles with the README's line", done.returncode == 0, done.stderr[-800:])
+    said = built(folder, FLOOR)
+    check("the README's floor compiles with the README's line", said == "", said)
     environment = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(folder, "my-plugins"))
     check("plugin list finds it", "floor" in run(HAPTICD, "plugin", "list", environment=environment)[1])
     code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
     check("plugin check passes it", code == 0, said)
     scene = re.search(r"^    hapticd: 1\n    hand:.*?\n    models:\n      - \{name: ground.*?\n", README, re.M)[0]
-    file = os.path.join(folder, "floor.yaml")
-    open(file, "w").write(re.sub(r"^    ", "", scene, flags=re.M))
+    file = write(folder, "floor.yaml", re.sub(r"^    ", "", scene, flags=re.M))
     report = os.path.join(folder, "report.json")
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", "--report", report, environment=environment)
     touched = os.path.exists(report) and json.load(open(report))["models"]["ground"]["contact_ticks"]
     check("check has nothing against it", "warning" not in run(HAPTICD, "check", file, environment=environment)[1])
     check("and it is felt in the README's scene", code == 0 and touched and touched > 100, (touched, said))
-    wrong = open(os.path.join(folder, "floor.cpp")).read().replace("stiffness * out.depth_m", "-stiffness * out.depth_m")
-    open(os.path.join(folder, "floor.cpp"), "w").write(wrong)
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
-    check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
-    code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
-    pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
-    check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
-    code, told = run(HAPTICD, "check", file, environment=environment)
-    check("and check warns in the same words before any run", code == 0 and "models[0].plugin: warning: model ground: its plugin pulled the probe" in told
-          and "its force has the wrong sign, although it reports to push only" in told, told)
-    open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags |= HSP_R_PUSHES;", ""))
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
-    check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
-    code, told = run(HAPTICD, "check", file, environment=environment)
-    check("and check, too, without a word about the limits that such a pull meets", code == 0 and "cuts the force" not in told
-          and re.search(r"models\[0\].plugin: warning: ground pulled the hand in during \d+ % of its contact", told), told)
-    driving = re.sub(r"stiffness \* out\.depth_m", "stiffness * out.depth_m + 5 * probe.velocity[1]", code_of_floor())
-    open(os.path.join(folder, "floor.cpp"), "w").write(driving.replace("report.flags |= HSP_R_PUSHES;", "report.flags |= HSP_R_VELOCITY;"))
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, told = run(HAPTICD, "check", file, environment=environment)
-    check("a damper that drives is told by check", code == 0 and re.search(r"ground gave the hand \S+ mJ more than it took", told), told)
-    flesh = driving.replace('"A horizontal floor."', '"A horizontal floor.", HSP_C_DEFORMS')
-    open(os.path.join(folder, "floor.cpp"), "w").write(flesh.replace("report.flags |= HSP_R_PUSHES;", "report.flags |= HSP_R_VELOCITY;"))
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, told = run(HAPTICD, "check", file, environment=environment)
-    check("also of a shape that deforms", flesh != driving and re.search(r"ground gave the hand \S+ mJ more than it took", told), told)
-    check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
-    open(os.path.join(folder, "floor.cpp"), "w").write(code_of_floor().replace("out.flags = HSP_OUT_TRACED;", ""))
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
-    check("a floor that forgets HSP_OUT_TRACED is felt, and the run says so",
-          re.search(r"ground pushed in \d+ ticks without HSP_OUT_TRACED", said) and "touched no model" not in said, said)
-    depthless = re.sub(r"out\.depth_m = ([^;]*);", r"const double depth = \1;", code_of_floor(), count=1)
-    depthless = re.sub(r"out\.depth_m", "depth", depthless)
-    open(os.path.join(folder, "floor.cpp"), "w").write(depthless)
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
-    check("a floor that leaves depth_m at 0 and only pushes is silenced, and the run says why",
-          "its depth_m was left at 0 inside" in said and "touched no model" not in said, said)
-    open(os.path.join(folder, "floor.cpp"), "w").write(depthless.replace("report.flags |= HSP_R_PUSHES;", ""))
-    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
-    check("one that claims nothing is felt, and the run says so",
-          re.search(r"ground pushed in \d+ ticks with depth_m left at 0", said) and "touched no model" not in said, said)
-    new, line = re.search(r"^    hapticd (plugin new c_ball .*)\n    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M).groups()
-    code, said = run(HAPTICD, *new.split(), "--dir", os.path.join(folder, "c_ball"))
-    check("the README's shape in C is written", code == 0, said)
-    line = line.replace("my-plugins", os.path.join(folder, "my-plugins")).replace(" c_ball/", f" {folder}/c_ball/")
-    done = subprocess.run(line.replace("gcc", "cc", 1), shell=True, cwd=SOURCE, capture_output=True, text=True, timeout=200)
-    check("the README's shape in C compiles with its line", done.returncode == 0, done.stderr[-800:])
-    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/c_ball.so"), "--timeout", "60")
-    check("and passes the check", code == 0, said)
-    check("and is found", "c_ball" in run(HAPTICD, "plugin", "list", environment=environment)[1])
-    page = open(os.path.join(SOURCE, "driver/docs/man/hapticd-shape.7")).read().split(".SH EXAMPLE\n.nf\n")[1].split("HAPTICD_SHAPES(Floor)")[0]
-    open(os.path.join(folder, "page.cpp"), "w").write(page.replace("\\-", "-") + "HAPTICD_SHAPES(Floor)\n")
-    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "page.cpp"], cwd=folder, capture_output=True, text=True)
-    check("the manual page's floor compiles, and claims to push only", done.returncode == 0 and "HSP_R_PUSHES" in page, done.stderr[-800:])
-    slip = re.sub(r"hsp_status touch\(", "hsp_status tuoch(", code_of_floor())
-    open(os.path.join(folder, "slip.cpp"), "w").write(slip)
-    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "slip.cpp"], cwd=folder, capture_output=True, text=True)
-    check("a misspelt touch() is named", "neither hsp_status touch" in done.stderr, done.stderr[:800])
-    done = subprocess.run([CXX, "-std=c++17", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "page.cpp"], cwd=folder, capture_output=True, text=True)
-    check("an old standard is named", "-std=c++20" in done.stderr, done.stderr[:800])
+    wrong_sign(folder, file, environment)
+    drives(folder, file, environment)
+    forgets(folder, file, environment)
+    shape_in_c(folder, environment)
     code, said = run(HAPTICD, "check", file, "--plugin-path", os.path.join(folder, "my-plugins"))
     check("--plugin-path may stand after the subcommand", code == 0, said)
     code, said = run(HAPTICD, "check", "--plugin-path", os.path.join(folder, "my-plugins"), file)
     check("and before the file", code == 0, said)
 
 
-def other_lines(folder):
-    """The table lines of writing_a_shape.md belong to a plugin that compiles."""
+def wrong_sign(folder, file, environment):
+    wrong, report = FLOOR.replace("stiffness * out.depth_m", "-stiffness * out.depth_m"), os.path.join(folder, "report.json")
+    built(folder, wrong)
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
+    check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
+    code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
+    pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
+    check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
+    code, told = run(HAPTICD, "check", file, environment=environment)
+    check("and check warns in the same words before any run", code == 0 and "models[0].plugin: warning: model ground: its plugin pulled the probe" in told
+          and "its force has the wrong sign, although it reports to push only" in told, told)
+    built(folder, wrong.replace(PUSHES, ""))
+    code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
+    check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
+    code, told = run(HAPTICD, "check", file, environment=environment)
+    check("and check, too, without a word about the limits that such a pull meets", code == 0 and "cuts the force" not in told
+          and re.search(r"models\[0\].plugin: warning: ground pulled the hand in during \d+ % of its contact", told), told)
+
+
+def drives(folder, file, environment):
+    """A damper of the wrong sign, in a shape that is stiff and in one that deforms."""
+    driving = FLOOR.replace("stiffness * out.depth_m", "stiffness * out.depth_m + 5 * probe.velocity[1]").replace(PUSHES, "report.flags |= HSP_R_VELOCITY;")
+    flesh = driving.replace('"A horizontal floor."', '"A horizontal floor.", HSP_C_DEFORMS')
+    for name, code in (("a damper that drives is told by check", driving), ("also of a shape that deforms", flesh)):
+        built(folder, code)
+        code, told = run(HAPTICD, "check", file, environment=environment)
+        check(name, flesh != driving and code == 0 and re.search(r"ground gave the hand \S+ mJ more than it took", told), told)
+
+
+def forgets(folder, file, environment):
+    """What a floor leaves out of its answer is told by the run."""
+    depthless = re.sub(r"out\.depth_m", "depth", re.sub(r"out\.depth_m = ([^;]*);", r"const double depth = \1;", FLOOR, count=1))
+    for name, code, words in (
+            ("a floor that forgets HSP_OUT_TRACED is felt, and the run says so", FLOOR.replace("out.flags = HSP_OUT_TRACED;", ""),
+             r"ground pushed in \d+ ticks without HSP_OUT_TRACED"),
+            ("a floor that leaves depth_m at 0 and only pushes is silenced, and the run says why", depthless, "its depth_m was left at 0 inside"),
+            ("one that claims nothing is felt, and the run says so", depthless.replace(PUSHES, ""), r"ground pushed in \d+ ticks with depth_m left at 0")):
+        built(folder, code)
+        said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)[1]
+        check(name, re.search(words, said) and "touched no model" not in said, said)
+
+
+def shape_in_c(folder, environment):
+    new, line = re.search(r"^    hapticd (plugin new c_ball .*)\n    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M).groups()
+    code, said = run(HAPTICD, *new.split(), "--dir", os.path.join(folder, "c_ball"))
+    check("the README's shape in C is written", code == 0, said)
+    line = line.replace("my-plugins", os.path.join(folder, "my-plugins")).replace(" c_ball/", f" {folder}/c_ball/")
+    code, said = run("sh", "-c", line.replace("gcc", "cc", 1), cwd=SOURCE)
+    check("the README's shape in C compiles with its line", code == 0, said[-800:])
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/c_ball.so"), "--timeout", "60")
+    check("and passes the check", code == 0, said)
+    check("and is found", "c_ball" in run(HAPTICD, "plugin", "list", environment=environment)[1])
+
+
+def other_sources(folder):
+    """The floor of the manual page, slips that the compiler names, and the table lines of writing_a_shape.md in a plugin."""
+    page = open(os.path.join(SOURCE, "driver/docs/man/hapticd-shape.7")).read().split(".SH EXAMPLE\n.nf\n")[1].split("HAPTICD_SHAPES(Floor)")[0]
+    page = page.replace("\\-", "-") + "HAPTICD_SHAPES(Floor)\n"
+    said = syntax(folder, page)
+    check("the manual page's floor compiles, and claims to push only", said == "" and "HSP_R_PUSHES" in page, said)
+    said = syntax(folder, FLOOR.replace("hsp_status touch(", "hsp_status tuoch("))
+    check("a misspelt touch() is named", "neither hsp_status touch" in said, said)
+    said = syntax(folder, page, "c++17")
+    check("an old standard is named", "-std=c++20" in said, said)
     block = re.search(r"```cpp\n(    F::choice.*?)```", SHAPES, re.S)[1]
     members = "  int law = 0;\n  std::vector<double> profile;\n  std::array<double, 3> axis{};\n  std::string heights;\n"
-    code = re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
-    code = code.replace("  double stiffness = 0;\n", "  double stiffness = 0;\n" + members + '  static constexpr const char* kLaws[] = {"linear", "table"};\n')
-    code = code.replace("return std::array{F::real(", "return std::array{\n" + re.sub(r"//.*", "", block) + "F::real(")
-    open(os.path.join(folder, "more.cpp"), "w").write(code)
-    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "more.cpp"], cwd=folder, capture_output=True, text=True)
-    check("the other lines of a table compile", done.returncode == 0, done.stderr[:1500])
+    code = FLOOR.replace("  double stiffness = 0;\n", "  double stiffness = 0;\n" + members + '  static constexpr const char* kLaws[] = {"linear", "table"};\n')
+    said = syntax(folder, code.replace("return std::array{F::real(", "return std::array{\n" + re.sub(r"//.*", "", block) + "F::real("))
+    check("the other lines of a table compile", said == "", said)
 
 
 def twin_of_an_arm(folder):
@@ -248,7 +258,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     own_scene(folder)
     own_shape(folder)
     own_arm(folder)
-    other_lines(folder)
+    other_sources(folder)
     twin_of_an_arm(folder)
     own_client(folder)
 finish()
