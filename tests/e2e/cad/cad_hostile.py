@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import LONG, check, finish, program
+from e2e import LONG, check, finish, program, write
 
 HAPTICD, MAKE_PARTS = sys.argv[1:3]
 run = program(HAPTICD, timeout=800)
@@ -22,9 +22,7 @@ source = random.Random(3)
 
 
 def put(name, content):
-    with open(join(name), "wb") as out:
-        out.write(content)
-    return join(name)
+    return write(folder, name, content)
 
 
 def refused(what, file, *arguments):

@@ -13,7 +13,7 @@ import warnings
 
 HAPTICD, SOURCE = sys.argv[1:3]
 sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "driver", "doors", "client", "python")]
-from e2e import check, finish, program, until
+from e2e import check, finish, program, until, write
 import h5py
 import hapticd
 import numpy
@@ -27,19 +27,16 @@ models:
 """
 
 
-def write(folder, name, enabled):
-    file = os.path.join(folder, name)
-    with open(file, "w") as out:
-        out.write(SCENE.format(source=SOURCE, enabled=enabled))
-    return file
+def sceneOf(folder, name, enabled):
+    return write(folder, name, SCENE.format(source=SOURCE, enabled=enabled))
 
 
 def isChecked(folder, scene):
     code, told = ask("check", scene)
     check("two stimuli in one place are no mistake if one starts disabled", code == 0 and "same geometry" not in told and "lie in one another" not in told, told)
-    code, told = ask("check", write(folder, "both.yaml", "true"))
+    code, told = ask("check", sceneOf(folder, "both.yaml", "true"))
     check("but they are if both are enabled", "same geometry in the same place" in told, told)
-    code, told = ask("check", write(folder, "word.yaml", "perhaps"))
+    code, told = ask("check", sceneOf(folder, "word.yaml", "perhaps"))
     check("enabled is true or false", code == 2 and "models[1].enabled" in told and "true" in told, told)
     code, told = ask("explain", scene)
     check("explain tells that it starts disabled", code == 0 and "disabled: neither felt nor traced until it is enabled (hapticd ctl enable hard)" in told, told)
@@ -95,7 +92,7 @@ with tempfile.TemporaryDirectory() as scratch:
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
     os.environ.update(RUNTIME_DIRECTORY=scratch)
     ask = program(HAPTICD, environment, together=True)
-    trial, recorded, log = write(scratch, "trial.yaml", "false"), os.path.join(scratch, "run.h5"), os.path.join(scratch, "log")
+    trial, recorded, log = sceneOf(scratch, "trial.yaml", "false"), os.path.join(scratch, "run.h5"), os.path.join(scratch, "log")
     isChecked(scratch, trial)
     with open(log, "w") as out, subprocess.Popen([HAPTICD, "run", trial, "--name", "stimuli", "--record", recorded], env=environment, stdout=out, stderr=out) as run:
         with hapticd.connect("stimuli", wait=30) as client:

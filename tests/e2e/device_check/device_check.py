@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish, program
+from e2e import check, finish, program, write
 
 HAPTICD, SOURCE, MODULES, PLUGINS = sys.argv[1:5]
 run, folder = program(HAPTICD, together=True), tempfile.mkdtemp()
@@ -18,9 +18,7 @@ os.environ["XDG_STATE_HOME"] = folder
 
 
 def put(name, text):
-    with open(os.path.join(folder, name), "w") as file:
-        file.write(text)
-    return os.path.join(folder, name)
+    return write(folder, name, text)
 
 
 def arm(slip):

@@ -14,7 +14,7 @@ import warnings
 HAPTICD, SOURCE = sys.argv[1:3]
 sys.path[:0] = [os.path.join(SOURCE, "tests", "support"), os.path.join(SOURCE, "driver", "doors", "client", "python")]
 from daemon import Daemon
-from e2e import check, finish, program, until
+from e2e import check, finish, program, until, write
 import h5py
 import hapticd
 
@@ -38,12 +38,6 @@ models:
 """
 RELEASE = 8  # kind of an order
 SAME = "every bit is the same"
-
-
-def write(folder, name, text):
-    with open(os.path.join(folder, name), "w") as out:
-        out.write(text)
-    return os.path.join(folder, name)
 
 
 def files(folder):
