@@ -93,10 +93,13 @@ def geometry(folder, ask):
     check("a good one is not", code == 0 and "warning" not in out, out)
 
 
-def hands(folder, ask):
-    def told(hand, top="", models=BALL):
-        return ask("check", write(folder, "hand.yaml", f"hapticd: 1\nhand: {{{hand}}}\n{top}{models}"))
+def told_of(folder, ask):
+    """A function that checks a scene with a hand."""
+    return lambda hand, top="", models=BALL: ask("check", write(folder, "hand.yaml", f"hapticd: 1\nhand: {{{hand}}}\n{top}{models}"))
 
+
+def presses(folder, ask):
+    told = told_of(folder, ask)
     for rise in (0.2, 0.5, 1):
         code, out, _ = told(f"script: press, center: [0, 0, -0.09], radius: 0.05, rise: {rise}, rate: 0.2")
         check(f"a press of {rise} m comes out behind the ball", code == 0 and "comes out behind" in out, out)
@@ -109,6 +112,11 @@ def hands(folder, ask):
         check("a press into a body that gives way is not judged by a thickness", code == 0 and ("comes out behind" in out) == before, out)
     code, out, _ = told("script: press, center: [0, 0, -0.09], radius: 0.05, rise: 0.003, rate: 1")
     check("one of 3 mm does not", code == 0 and "warning" not in out, out)
+
+
+def radii(folder, ask):
+    """A hand that meets nothing is told the radius with which it does."""
+    told = told_of(folder, ask)
     for hand in ("radius: 0.1", "radius: 0.02", "radius: 0.1, script: press, rise: 0.005, rate: 1", "radius: 0.01, script: tap, rise: 0.004"):
         code, out, _ = told(hand)
         radius = re.search(r"hand.radius of (\S+) m", out)
@@ -129,6 +137,10 @@ def hands(folder, ask):
         if radius:
             code, out, _ = told(f"script: stroke, radius: {radius[1]}", models=models)
             check("and touches it with that", code == 0 and "feels nothing" not in out, out)
+
+
+def scripts(folder, ask):
+    told = told_of(folder, ask)
     huge = re.sub(r"^      - \[(.*)\]$", lambda m: "      - [" + ", ".join(str(30 * float(x)) for x in m[1].split(",")) + "]",
                   open(f"{SOURCE}/config/models/sphere.yaml").read(), flags=re.M)
     write(folder, "huge.yaml", huge)
@@ -155,6 +167,6 @@ def hands(folder, ask):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     ask = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
-    for part in (reach, tables, geometry, hands):
+    for part in (reach, tables, geometry, presses, radii, scripts):
         part(scratch, ask)
 finish()

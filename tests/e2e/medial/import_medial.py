@@ -4,6 +4,7 @@ reached or is of odd size is warned of; bad input is refused.
 
 Usage: import_medial.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
+import itertools
 import math
 import os
 import re
@@ -134,9 +135,9 @@ def recoverBranches(folder):
     """From the shipped branching body: its own triangles, drawn and read again."""
     out = os.path.join(folder, "branch.ma")
     mesh = os.path.join(folder, "branch.obj")
-    n, spacing = 60, .0019
+    spacing = .0019
     axis = read(os.path.join(CONFIG, "models", "branch.ma"))
-    save(mesh, cubes(axis, n, spacing))
+    save(mesh, cubes(axis, spacing))
     code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.0025", "--angle", "75", out, *FEWER)
     check("a branching body is imported", code == 0, text)
     if code == 0:
@@ -144,8 +145,8 @@ def recoverBranches(folder):
         check("it is one body within 4 mm of its steps of 1.9 mm", parts == 1 and there <= 4e-3 and back <= 5e-3, text)
 
 
-def cubes(axis, n, spacing):
-    """The surface of the little cubes whose middles are inside the body: stairs of `spacing`."""
+def cells(axis, spacing):
+    """The cells of a grid whose middles are inside the body."""
     spheres, edges, triangles = axis
     solid = []
     for a, b in edges:
@@ -156,15 +157,14 @@ def cubes(axis, n, spacing):
                 s, t = i / 6, j / 6
                 solid.append([(1 - s - t) * u + s * v + t * w for u, v, w in zip(spheres[a], spheres[b], spheres[c])])
     inside = set()
-    for x, y, z, r in solid:
-        low = [int(math.floor((q - r) / spacing)) for q in (x, y, z)]
-        high = [int(math.ceil((q + r) / spacing)) for q in (x, y, z)]
-        for i in range(low[0], high[0] + 1):
-            for j in range(low[1], high[1] + 1):
-                for k in range(low[2], high[2] + 1):
-                    if math.dist((i * spacing, j * spacing, k * spacing), (x, y, z)) <= r:
-                        inside.add((i, j, k))
-    # no cube may touch the body by an edge or corner alone: fill until none does
+    for *place, r in solid:
+        ranges = [range(int(math.floor((q - r) / spacing)), int(math.ceil((q + r) / spacing)) + 1) for q in place]
+        inside.update(cell for cell in itertools.product(*ranges) if math.dist([c * spacing for c in cell], place) <= r)
+    return inside
+
+
+def fill(inside):
+    """Adds cells until none touches another by an edge or corner alone."""
     changed = True
     while changed:
         changed = False
@@ -174,11 +174,16 @@ def cubes(axis, n, spacing):
                 if other not in inside:
                     continue
                 axes = [m for m in range(3) if d[m]]
-                one = tuple(c + (d[m] if m == axes[0] else 0) for m, c in enumerate(cell))
-                two = tuple(c + (d[m] if m == axes[1] else 0) for m, c in enumerate(cell))
+                one, two = (tuple(c + (d[m] if m == axis else 0) for m, c in enumerate(cell)) for axis in axes)
                 if one not in inside and two not in inside:
                     inside.add(one)
                     changed = True
+
+
+def cubes(axis, spacing):
+    """The surface of the little cubes whose middles are inside the body: stairs of `spacing`."""
+    inside = cells(axis, spacing)
+    fill(inside)
     points, index, faces = [], {}, []
 
     def corner(p):
@@ -187,20 +192,19 @@ def cubes(axis, n, spacing):
             points.append(tuple((q - .5) * spacing for q in p))
         return index[p]
 
-    for i, j, k in inside:
+    for cell in inside:
         for m, side in ((0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
-            step = [0, 0, 0]
-            step[m] = 1 if side else -1
-            if (i + step[0], j + step[1], k + step[2]) in inside:
+            beside = list(cell)
+            beside[m] += 1 if side else -1
+            if tuple(beside) in inside:
                 continue
-            a, b = (m + 1) % 3, (m + 2) % 3
-            base = [i, j, k]
+            base = list(cell)
             base[m] += side
             square = []
             for da, db in ((0, 0), (1, 0), (1, 1), (0, 1)):
                 p = list(base)
-                p[a] += da
-                p[b] += db
+                p[(m + 1) % 3] += da
+                p[(m + 2) % 3] += db
                 square.append(corner(tuple(p)))
             faces.append(square if side else square[::-1])
     return obj(points, faces)

@@ -39,7 +39,7 @@ def mapped(daemon):
     return {os.path.basename(line.split()[-1]) for line in open(f"/proc/{daemon.pid}/maps") if line.rstrip().endswith(".so") or ".so." in line}
 
 
-def main():
+def maps_what_it_needs():
     daemon = started("sphere.yaml")
     libraries = mapped(daemon)
     for unwanted in ("libusb", "hidapi", "mat_deformable", "push_button", "pendulum", "template", "usb_", "vme"):
@@ -49,6 +49,8 @@ def main():
     daemon.send_signal(signal.SIGTERM)
     daemon.wait(10)
 
+
+def signalled():
     for sig in (signal.SIGINT, signal.SIGTERM):
         with tempfile.TemporaryDirectory() as folder:
             report = os.path.join(folder, "report.json")
@@ -60,10 +62,13 @@ def main():
             check(f"{sig.name} still writes the report", bool(written) and written["ticks"] > 0)
             check(f"{sig.name} is no fault", written and written["faults"] == [], written and written["faults"])
 
-    def refused(name, *arguments):
-        done = hapticd("run", *arguments)
-        check(f"{name} is refused with exit code 2 and a reason", done.returncode == 2 and done.stderr.strip(), (done.returncode, done.stderr))
 
+def refused(name, *arguments):
+    done = hapticd("run", *arguments)
+    check(f"{name} is refused with exit code 2 and a reason", done.returncode == 2 and done.stderr.strip(), (done.returncode, done.stderr))
+
+
+def bad_input():
     teapot = os.path.join(SCENES, "teapot.yaml")
     refused("--for -1", teapot, "--for", "-1")
     refused("--for 1s", teapot, "--for", "1s")
@@ -76,6 +81,10 @@ def main():
         device = os.path.join(folder, "device.yaml")
         open(device, "w").write("hapticd-device: 1\nmodule: no_such_module\nname: none\n")
         refused("a device of a missing module", teapot, "--device", device)
+
+
+def many_models():
+    with tempfile.TemporaryDirectory() as folder:
         scene = os.path.join(folder, "many.yaml")
         model = os.path.join(SOURCE, "config", "models", "sphere.yaml")
         with open(scene, "w") as out:
@@ -85,7 +94,10 @@ def main():
                 out.write(f"  - {{name: m{i}, plugin: nurbs_rigid, pose: {{position: [{i % 100}, {i // 100}, 0]}}, parameters: {{geometry: {model}}}}}\n")
         done = hapticd("run", scene, "--for", "0.2", "--virtual-time")
         check(f"a scene of {models} models runs, or says why not", done.returncode in (0, 2) and (done.returncode == 0 or done.stderr), (done.returncode, done.stderr[-300:]))
-    finish()
 
 
-main()
+maps_what_it_needs()
+signalled()
+bad_input()
+many_models()
+finish()

@@ -86,8 +86,7 @@ def check_sphere(name, radius, rows, result, tolerance, center=lambda t: (0, 0, 
     report(name, worst_of(errors), tolerance)
 
 
-def main():
-    R = 0.05
+def spheres(R=0.05):
     rows = list(walk(lambda t: R - 0.001 + 0.0015 * math.sin(9 * t)))
     check_sphere("sphere, in and out of contact", R, rows, trace([sphere(R)], rows), 1e-9)
 
@@ -116,6 +115,8 @@ def main():
         errors = [0 if math.isnan(r["depth"]) else abs(r["depth"] - R + s[3]) for s, r in zip(rows, far)]
         report(f"a model {name} leaves no foot behind", worst_of(errors) if math.isnan(far[-1]["depth"]) else math.inf, 1e-6)
 
+
+def bad_samples(R=0.05):
     rows = list(walk(lambda t: R - 0.001))
     for bad in (700, 701, 1500):
         rows[bad] = [rows[bad][0], math.nan, 0, math.inf]
@@ -129,7 +130,8 @@ def main():
     result = trace([sphere(R)], rows)
     check_sphere("found again within 5 ms of a teleport", R, rows[406:], result[406:], 1e-9)
 
-    h = 0.04
+
+def boxes(h=0.04):
     box = traced.block([-h] * 3, [h] * 3)
     rows = [[i * 1e-3, 0.03 * math.sin(i * 5e-3), 0.03 * math.cos(i * 3.3e-3), h - 0.001] for i in range(2000)]
     result = trace(box, rows)
@@ -141,8 +143,10 @@ def main():
     result = trace(box, rows)
     errors = [abs(outside(s[1:]) + r["depth"]) for s, r in zip(rows, result) if outside(s[1:]) > 1e-6]
     report("round the outside of a box, over its edges", worst_of(errors), 1e-6)
-    says_why_a_model_is_silenced()
-    finish()
 
 
-main()
+spheres()
+bad_samples()
+boxes()
+says_why_a_model_is_silenced()
+finish()
