@@ -104,7 +104,7 @@ void addCheck(const Command& app, int& exit_code) {
       "the nearest stable setting. If the arm is simulated, its hand then runs its\nscript once in virtual time. "
       "Warnings report a hand that touches no model, a force that is too small to feel or that\nthe limits cut, a "
       "button that does not click, and a plugin that run would silence or warn of. Warnings do not affect the exit "
-      "code.\n\nExample:\n  hapticd check "
+      "code.\n\nExamples:\n  hapticd check "
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
       "--device my-arm.yaml\n  hapticd check --schema scene > "
       "scene.schema.json");

@@ -83,7 +83,7 @@ void addView(const Command& app, int& exit_code) {
   command.addOption("--file,recording", options->file, "show this recording or dump instead of a daemon");
   command.footer(
       "The command prints the address of the page with a token. Everybody who has the token may look.\nTo look from "
-      "another computer, forward the port: ssh -L PORT:127.0.0.1:PORT HOST.\n\nExample:\n  hapticd view --control "
+      "another computer, forward the port: ssh -L PORT:127.0.0.1:PORT HOST.\n\nExamples:\n  hapticd view --control "
       "--open\n  hapticd view run.h5 "
       "--open");
   command.callback([options, &exit_code] { exit_code = view(*options); });

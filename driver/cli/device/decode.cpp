@@ -275,7 +275,7 @@ void addEncode(const Command& device, int& exit_code) {
       "--from-arm,\nq1,... are the positions, or x,y,z is the tip in the device frame; other columns are left out. In "
       "a "
       "table\nwritten by `device decode`, only the rows of good reports are used.\n\n"
-      "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
+      "Examples:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");
   command.callback([options, &exit_code] { exit_code = encode(*options); });
