@@ -5,7 +5,7 @@ import {mkdirSync, mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {chromium} from 'playwright-core';
-import {root, Sandbox} from './program.mjs';
+import {root, sandboxed} from './program.mjs';
 
 const kFlags = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync', '--autoplay-policy=no-user-gesture-required'];
@@ -35,24 +35,35 @@ export class Browser {
     return page;
   }
 
-  /** Runs `use(sandbox, open)` with programs and files of its own. open(url, before) gives a page, in which nothing may
-   * go wrong. `picture` is the name of a picture of the last page if the test fails. */
-  async sandboxed(use, picture = '') {
-    const sandbox = new Sandbox(), pages = [];
-    const open = async (url, before) => {
-      pages.push(await this.page(url, before));
-      return pages.at(-1);
-    };
+  /** Opens a browser for one test alone. */
+  static async alone(how, use) {
+    const browser = await Browser.open(how);
     try {
-      await use(sandbox, open);
-      for (const page of pages) assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
-    } catch (error) {
-      if (picture) await pages.at(-1)?.screenshot({path: join(pictures, `${picture}.png`)}).catch(() => {});
-      throw error;
+      await browser.sandboxed(use);
     } finally {
-      for (const page of pages) await page.close();
-      await sandbox.close();
+      await browser.close();
     }
+  }
+
+  /** Runs `use(sandbox, open, browser)` with programs and files of its own. open(url, before) gives a page, in which
+   * nothing may go wrong. `picture` is the name of a picture of the last page if the test fails. */
+  sandboxed(use, picture = '') {
+    return sandboxed(async (sandbox) => {
+      const pages = [];
+      const open = async (url, before) => {
+        pages.push(await this.page(url, before));
+        return pages.at(-1);
+      };
+      try {
+        await use(sandbox, open, this);
+        for (const page of pages) assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
+      } catch (error) {
+        if (picture) await pages.at(-1)?.screenshot({path: join(pictures, `${picture}.png`)}).catch(() => {});
+        throw error;
+      } finally {
+        for (const page of pages) await page.close();
+      }
+    });
   }
 
   async close() {

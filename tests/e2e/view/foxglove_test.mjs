@@ -9,7 +9,7 @@ import protocol from '@foxglove/ws-protocol';
 import {parse} from '@foxglove/rosmsg';
 import {MessageReader} from '@foxglove/rosmsg2-serialization';
 import {WebSocket} from 'ws';
-import {hapticd, Sandbox, scenes, until} from './program.mjs';
+import {hapticd, sandboxed, scenes, until} from './program.mjs';
 
 /** Subscribes to some topics and keeps what comes. */
 class Listener {
@@ -35,40 +35,35 @@ class Listener {
 }
 
 for (const name of ['foxglove.sdk.v1', 'foxglove.websocket.v1']) {
-  test(`${name}: no gap, and the bits of the recording`, async () => {
-    const sandbox = new Sandbox();
-    try {
-      const h5 = join(sandbox.folder, 'run.h5'), csv = join(sandbox.folder, 'ticks.csv');
-      const {daemon, url} = await sandbox.show(scenes('pendulum'), {args: ['--record', h5]});
-      const listener = new Listener(url, name, ['/hapticd/ticks', '/hapticd/poses', '/tf', '/scene']);
-      await until(() => listener.messages.get('/hapticd/ticks').length > 3000, 60, '3000 ticks');
-      await until(() => listener.messages.get('/scene').length > 0, 20, 'a scene');
-      assert.deepEqual(listener.errors, []);
-      listener.client.close();
-      await daemon.end('SIGINT');
-      execFileSync(hapticd, ['export', h5, '--csv', csv, '--stream', 'ticks']);
-      const [head, ...rows] = readFileSync(csv, 'utf8').trimEnd().split('\n').map((row) => row.split(','));
-      const ticks = listener.decoded('/hapticd/ticks');
-      ticks.forEach((tick, i) => {
-        if (i > 0) assert.equal(tick.tick, ticks[i - 1].tick + 1n, 'no tick is missing');
-        const row = rows[Number(tick.tick)];
-        head.forEach((field, column) => {
-          const wanted = typeof tick[field] === 'bigint' ? BigInt(row[column]) : Number(row[column]);
-          assert.ok(Object.is(tick[field], wanted) || Object.is(tick[field], Math.fround(Number(wanted))), `${field} of tick ${tick.tick}: ${tick[field]}, ${row[column]}`);
-        });
+  test(`${name}: no gap, and the bits of the recording`, () => sandboxed(async (sandbox) => {
+    const h5 = join(sandbox.folder, 'run.h5'), csv = join(sandbox.folder, 'ticks.csv');
+    const {daemon, url} = await sandbox.show(scenes('pendulum'), {args: ['--record', h5]});
+    const listener = new Listener(url, name, ['/hapticd/ticks', '/hapticd/poses', '/tf', '/scene']);
+    await until(() => listener.messages.get('/hapticd/ticks').length > 3000, 60, '3000 ticks');
+    await until(() => listener.messages.get('/scene').length > 0, 20, 'a scene');
+    assert.deepEqual(listener.errors, []);
+    listener.client.close();
+    await daemon.end('SIGINT');
+    execFileSync(hapticd, ['export', h5, '--csv', csv, '--stream', 'ticks']);
+    const [head, ...rows] = readFileSync(csv, 'utf8').trimEnd().split('\n').map((row) => row.split(','));
+    const ticks = listener.decoded('/hapticd/ticks');
+    ticks.forEach((tick, i) => {
+      if (i > 0) assert.equal(tick.tick, ticks[i - 1].tick + 1n, 'no tick is missing');
+      const row = rows[Number(tick.tick)];
+      head.forEach((field, column) => {
+        const wanted = typeof tick[field] === 'bigint' ? BigInt(row[column]) : Number(row[column]);
+        assert.ok(Object.is(tick[field], wanted) || Object.is(tick[field], Math.fround(Number(wanted))), `${field} of tick ${tick.tick}: ${tick[field]}, ${row[column]}`);
       });
-      const transforms = listener.decoded('/tf').at(-1).transforms;
-      assert.deepEqual(transforms.map((t) => t.child_frame_id).map((n) => n.replace(/.*_tip$/, 'tip')), ['pendulum', 'tip']);
-      const {x, y, z, w} = transforms[0].transform.rotation;
-      assert.ok(Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-9, 'a unit quaternion');
-      const scene = JSON.parse(new TextDecoder().decode(listener.messages.get('/scene')[0].data));
-      assert.equal(scene.entities[0].id, 'pendulum');
-      assert.ok(scene.entities[0].triangles[0].indices.length > 100);
-      const stamps = listener.messages.get('/hapticd/ticks').map((m) => m.timestamp);
-      assert.ok(stamps.every((s, i) => i === 0 || s > stamps[i - 1]), 'times grow');
-      assert.ok(Math.abs(Number(stamps[0] / 1000000n) - Date.now()) < 300e3, 'times are of today');
-    } finally {
-      await sandbox.close();
-    }
-  });
+    });
+    const transforms = listener.decoded('/tf').at(-1).transforms;
+    assert.deepEqual(transforms.map((t) => t.child_frame_id).map((n) => n.replace(/.*_tip$/, 'tip')), ['pendulum', 'tip']);
+    const {x, y, z, w} = transforms[0].transform.rotation;
+    assert.ok(Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-9, 'a unit quaternion');
+    const scene = JSON.parse(new TextDecoder().decode(listener.messages.get('/scene')[0].data));
+    assert.equal(scene.entities[0].id, 'pendulum');
+    assert.ok(scene.entities[0].triangles[0].indices.length > 100);
+    const stamps = listener.messages.get('/hapticd/ticks').map((m) => m.timestamp);
+    assert.ok(stamps.every((s, i) => i === 0 || s > stamps[i - 1]), 'times grow');
+    assert.ok(Math.abs(Number(stamps[0] / 1000000n) - Date.now()) < 300e3, 'times are of today');
+  }));
 }

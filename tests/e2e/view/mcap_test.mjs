@@ -11,7 +11,7 @@ import {McapIndexedReader} from '@mcap/core';
 import {parse} from '@foxglove/rosmsg';
 import {MessageReader} from '@foxglove/rosmsg2-serialization';
 import {decompress} from './zstd.mjs';
-import {Sandbox, hapticd, scenes} from './program.mjs';
+import {hapticd, sandboxed, scenes} from './program.mjs';
 
 const readable = (bytes) => ({
   size: async () => BigInt(bytes.length),
@@ -64,24 +64,19 @@ for (const scene of ['teapot', 'pendulum', 'two-arms', 'button']) {
   });
 }
 
-test('the text of a mark is a string of ROS', async () => {
-  const sandbox = new Sandbox();
-  try {
-    const h5 = join(sandbox.folder, 'run.h5'), mcap = join(sandbox.folder, 'run.mcap'), texts = ['trial 7 "begins", \u00e4', 'x'.repeat(95)];
-    const run = sandbox.start(['run', scenes('teapot'), '--name', 'marked', '--for', '100', '--allow-non-rt', '--record', h5]);
-    const ask = (...words) => execFileSync(hapticd, ['ctl', '--name', 'marked', '--wait', '30', ...words], {env: {...process.env, ...sandbox.env}, stdio: 'pipe'});
-    const ticks = texts.map((text) => JSON.parse(ask('mark', text)).tick);
-    ask('stop');
-    await run.ended;
-    execFileSync(hapticd, ['export', h5, '--mcap', mcap]);
-    const reader = await McapIndexedReader.Initialize({readable: readable(readFileSync(mcap)), decompressHandlers: {zstd: decompress}});
-    const found = [];
-    for await (const message of reader.readMessages({topics: ['/hapticd/marks']})) {
-      const schema = reader.schemasById.get(reader.channelsById.get(message.channelId).schemaId);
-      found.push(new MessageReader(parse(new TextDecoder().decode(schema.data), {ros2: true})).readMessage(message.data));
-    }
-    assert.deepEqual(found.map(({tick, text}) => [Number(tick), text]), ticks.map((tick, i) => [tick, texts[i]]));
-  } finally {
-    await sandbox.close();
+test('the text of a mark is a string of ROS', () => sandboxed(async (sandbox) => {
+  const h5 = join(sandbox.folder, 'run.h5'), mcap = join(sandbox.folder, 'run.mcap'), texts = ['trial 7 "begins", \u00e4', 'x'.repeat(95)];
+  const run = sandbox.start(['run', scenes('teapot'), '--name', 'marked', '--for', '100', '--allow-non-rt', '--record', h5]);
+  const ask = (...words) => execFileSync(hapticd, ['ctl', '--name', 'marked', '--wait', '30', ...words], {env: {...process.env, ...sandbox.env}, stdio: 'pipe'});
+  const ticks = texts.map((text) => JSON.parse(ask('mark', text)).tick);
+  ask('stop');
+  await run.ended;
+  execFileSync(hapticd, ['export', h5, '--mcap', mcap]);
+  const reader = await McapIndexedReader.Initialize({readable: readable(readFileSync(mcap)), decompressHandlers: {zstd: decompress}});
+  const found = [];
+  for await (const message of reader.readMessages({topics: ['/hapticd/marks']})) {
+    const schema = reader.schemasById.get(reader.channelsById.get(message.channelId).schemaId);
+    found.push(new MessageReader(parse(new TextDecoder().decode(schema.data), {ros2: true})).readMessage(message.data));
   }
-});
+  assert.deepEqual(found.map(({tick, text}) => [Number(tick), text]), ticks.map((tick, i) => [tick, texts[i]]));
+}));

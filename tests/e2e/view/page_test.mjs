@@ -6,7 +6,7 @@ import {readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, look, pictures, shown} from './browser.mjs';
-import {hapticd, root, Sandbox, scenes, until} from './program.mjs';
+import {hapticd, root, scenes, until} from './program.mjs';
 
 const kHardware = ['sarcos']; // scenes whose device is no simulated one
 const all = readdirSync(join(root, 'config', 'scenes'), {recursive: true}).filter((f) => f.endsWith('.yaml')).map((f) => f.replace('.yaml', '')).filter((s) => !kHardware.includes(s));
@@ -262,28 +262,21 @@ test('a model is added and removed by file', async () => {
 });
 
 for (const dark of [false, true]) {
-  test(`a window of 360 pixels, ${dark ? 'dark' : 'light'}: nothing sticks out, everything can be reached`, async () => {
-    const sandbox = new Sandbox(), narrow = await Browser.open({width: 360, height: 740, dark});
-    try {
-      const {url} = await sandbox.show(scenes('teapot'));
-      const page = await narrow.page(url);
-      await shown(page);
-      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 360), 'no sideways scrolling');
-      for (const name of ['Hold', 'Fit', 'Models', 'Events', 'Show']) {
-        const box = await page.locator(`button:has-text("${name}")`).first().boundingBox();
-        assert.ok(box && box.x >= 0 && box.x + box.width <= 360, `${name} is within the window: ${JSON.stringify(box)}`);
-      }
-      const reached = new Set();
-      for (let i = 0; i < 40; ++i) {
-        await page.keyboard.press('Tab');
-        reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent.trim().slice(0, 12)));
-      }
-      for (const id of ['hold', 'theme', 'canvas', 'fit', 'tab-models']) assert.ok(reached.has(id), `Tab reaches ${id}: ${[...reached]}`);
-      await page.screenshot({path: join(pictures, `narrow-${dark ? 'dark' : 'light'}.png`)});
-      assert.deepEqual(page.wrong, []);
-    } finally {
-      await narrow.close();
-      await sandbox.close();
+  test(`a window of 360 pixels, ${dark ? 'dark' : 'light'}: nothing sticks out, everything can be reached`, () => Browser.alone({width: 360, height: 740, dark}, async (sandbox, open) => {
+    const {url} = await sandbox.show(scenes('teapot'));
+    const page = await open(url);
+    await shown(page);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 360), 'no sideways scrolling');
+    for (const name of ['Hold', 'Fit', 'Models', 'Events', 'Show']) {
+      const box = await page.locator(`button:has-text("${name}")`).first().boundingBox();
+      assert.ok(box && box.x >= 0 && box.x + box.width <= 360, `${name} is within the window: ${JSON.stringify(box)}`);
     }
-  });
+    const reached = new Set();
+    for (let i = 0; i < 40; ++i) {
+      await page.keyboard.press('Tab');
+      reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent.trim().slice(0, 12)));
+    }
+    for (const id of ['hold', 'theme', 'canvas', 'fit', 'tab-models']) assert.ok(reached.has(id), `Tab reaches ${id}: ${[...reached]}`);
+    await page.screenshot({path: join(pictures, `narrow-${dark ? 'dark' : 'light'}.png`)});
+  }));
 }

@@ -64,3 +64,13 @@ export class Sandbox {
     rmSync(this.folder, {recursive: true, force: true});
   }
 }
+
+/** Runs `use(sandbox)` with programs and files of its own. */
+export async function sandboxed(use) {
+  const sandbox = new Sandbox();
+  try {
+    return await use(sandbox);
+  } finally {
+    await sandbox.close();
+  }
+}

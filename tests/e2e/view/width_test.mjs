@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {Browser, pictures, shown} from './browser.mjs';
-import {Sandbox, scenes} from './program.mjs';
+import {scenes} from './program.mjs';
 
 const kRead = '#status span, .field label, .model h3, .model small, .plot h3 span, .plot h3 small, .readouts dt, .readouts small, .tools button';
 
@@ -23,37 +23,24 @@ function mistakes(page) {
 }
 
 for (const scene of ['teapot', 'two-arms'])
-  test(`${scene}: in windows of three sizes no text is cut or covered`, async () => {
-    const sandbox = new Sandbox(), browser = await Browser.open({width: 800, height: 900});
-    try {
-      const {url} = await sandbox.show(scenes(scene));
-      const page = await browser.page(url);
-      await shown(page);
-      await page.locator('.field').first().waitFor();
-      await page.waitForFunction(() => /missed/.test(document.querySelector('#status span').textContent));
-      for (const [width, height] of [[800, 900], [1400, 900], [1000, 660]]) {
-        await page.setViewportSize({width, height});
-        await page.waitForTimeout(500);
-        assert.deepEqual(await mistakes(page), {cut: [], covered: []}, `${width} x ${height}`);
-        await page.screenshot({path: join(pictures, `${scene}-${width}x${height}.png`)});
-      }
-      assert.deepEqual(page.wrong, []);
-    } finally {
-      await browser.close();
-      await sandbox.close();
+  test(`${scene}: in windows of three sizes no text is cut or covered`, () => Browser.alone({width: 800, height: 900}, async (sandbox, open) => {
+    const {url} = await sandbox.show(scenes(scene));
+    const page = await open(url);
+    await shown(page);
+    await page.locator('.field').first().waitFor();
+    await page.waitForFunction(() => /missed/.test(document.querySelector('#status span').textContent));
+    for (const [width, height] of [[800, 900], [1400, 900], [1000, 660]]) {
+      await page.setViewportSize({width, height});
+      await page.waitForTimeout(500);
+      assert.deepEqual(await mistakes(page), {cut: [], covered: []}, `${width} x ${height}`);
+      await page.screenshot({path: join(pictures, `${scene}-${width}x${height}.png`)});
     }
-  });
+  }));
 
-test('a page of a daemon that does not run says so, and how to start it', async () => {
-  const sandbox = new Sandbox(), browser = await Browser.open({width: 800, height: 600});
-  try {
-    const [url] = await sandbox.start(['view', '--name', 'nobody']).says(/http:\S+/);
-    const page = await browser.page(url);
-    await page.waitForFunction(() => document.querySelector('#status span').textContent.includes('nobody'));
-    assert.match(await page.locator('#status span').textContent(), /No daemon named nobody runs yet.*hapticd run SCENE --name nobody/);
-    assert.deepEqual((await mistakes(page)).cut, []);
-  } finally {
-    await browser.close();
-    await sandbox.close();
-  }
-});
+test('a page of a daemon that does not run says so, and how to start it', () => Browser.alone({width: 800, height: 600}, async (sandbox, open) => {
+  const [url] = await sandbox.start(['view', '--name', 'nobody']).says(/http:\S+/);
+  const page = await open(url);
+  await page.waitForFunction(() => document.querySelector('#status span').textContent.includes('nobody'));
+  assert.match(await page.locator('#status span').textContent(), /No daemon named nobody runs yet.*hapticd run SCENE --name nobody/);
+  assert.deepEqual((await mistakes(page)).cut, []);
+}));
