@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+/// The contact of a ball about the probe with a model whose nearest points a kernel finds.
+///
+/// The ball's proxy stays outside of the model while the probe goes into it: its centre is the place nearest to the
+/// probe that the ball can reach without a jump (Ruspini, Kolarov and Khatib 1997, for exact surfaces instead of
+/// triangles). A spring pulls the probe to this centre. Kernels are asked for feet of the centre, which is never nearer
+/// to a face than the radius, so they need to know nothing of the ball. Where the ball rests against several faces, as
+/// in a groove, each has a plane that the centre must not pass.
+#pragma once
+#include <Eigen/Core>
+
+#include "kernels/contact/foot.hpp"
+#include "kernels/contact/half_spaces.hpp"
+
+namespace hapticd::contact {
+
+/// The ball of one probe.
+class BallProxy {
+ public:
+  /// [rt] Returns the contact of the ball about p, which is that of the point p with the surface of all places where
+  /// the ball just touches the model (the offset surface). So point and depth are on that surface: in contact the point
+  /// is the proxy's centre. All else is that of the centre's foot. A ball that begins where it does not fit, as inside
+  /// a shell, feels nothing until it fits; the status is kDegraded.
+  /// @param foot_at function that returns the foot of a centre, as felt from outside; it is called kMostFeet times at
+  /// most
+  /// @param p position of the probe [m], in the model frame; finite
+  /// @param radius [m] of the ball, > 0
+  template <class FootAt>
+  Foot step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept;
+
+  /// [rt] Forgets where the ball was, after a jump or a lost sample. It then begins at the probe.
+  void forget() noexcept {
+    known_ = has_reached_ = false;
+    lag_ = 0;
+  }
+  double lag() const noexcept { return lag_; }  ///< [rt] distance [m] from the probe to the proxy's centre
+
+  static constexpr int kMostFeet = 8;  ///< feet of one step; a flat face needs one, a groove three
+
+ private:
+  /// [m] a change of the centre that no hand can feel: less than 0.1 mN on the hardest walls
+  static constexpr double kSettled = 1e-8;
+  /// [m] a face that is farther from the ball than this does not touch it; of two that touch it both count, though on a
+  /// convex surface they are one after the other
+  static constexpr double kTouching = 1e-12;
+
+  void moveTo(const Eigen::Vector3d& target, double stride, double radius, int feet_left) noexcept;
+  void adaptStride(bool clear, const Eigen::Vector3d& before, const Eigen::Vector3d& now) noexcept;
+  double look(const Foot& foot, double radius) noexcept;
+  Eigen::Vector3d nearestFree(HalfSpaces& free, const Eigen::Vector3d& p) const noexcept;
+  Foot felt(Foot foot, const Eigen::Vector3d& p) noexcept;
+
+  Eigen::Vector3d center_{0, 0, 0};   ///< [m] of the proxy
+  Eigen::Vector3d reached_{0, 0, 0};  ///< [m] the last centre at which the ball was seen to be free
+  HalfSpace bound_;                   ///< what the foot of the centre leaves free
+  double gap_ = 0;                    ///< [m] the centre may go so far in every direction
+  double stride_ = 1;                 ///< see adaptStride()
+  double lag_ = 0;                    ///< see lag()
+  bool known_ = false;
+  bool has_reached_ = false;
+};
+
+/// What planes forbid is forgotten with each tick, and whenever the ball is clear of the surface: planes of a convex
+/// edge or of a wall that has ended would hold it in the air.
+template <class FootAt>
+Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept {
+  HalfSpaces free;
+  if (known_) free.add(bound_);
+  if (!known_) center_ = p;
+  known_ = true;
+  Foot foot;
+  int evaluations = 0;
+  Eigen::Vector3d target = free.nearestTo(p);
+  for (int feet_left = kMostFeet; feet_left > 0; --feet_left) {
+    const Eigen::Vector3d way = target - center_;
+    moveTo(target, target == p || feet_left <= 2 ? 1 : stride_, radius, feet_left);
+    foot = foot_at(center_);
+    evaluations += foot.evaluations;
+    if (!found(foot)) break;
+    const double gap = look(foot, radius);
+    const bool clear = gap > kTouching + foot.residual * foot.residual / radius;  // an error along the surface
+    if (clear) free.clear();
+    free.add(bound_);
+    target = nearestFree(free, p);
+    adaptStride(clear, way, target - center_);
+    if (gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled) break;
+  }
+  foot.evaluations = evaluations;
+  return felt(foot, p);
+}
+
+}  // namespace hapticd::contact

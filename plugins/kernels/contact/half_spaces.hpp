@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// The nearest point to a probe that some planes leave free.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+
+namespace hapticd::contact {
+
+/// The points x with normal . x >= offset.
+struct HalfSpace {
+  Eigen::Vector3d normal{0, 0, 1};  ///< unit vector into the half-space
+  double offset = 0;                ///< [m] distance of its plane from the origin, along the normal
+
+  double height(const Eigen::Vector3d& x) const noexcept { return normal.dot(x) - offset; }  ///< [m] > 0 inside
+};
+
+/// The common part of up to four half-spaces.
+class HalfSpaces {
+ public:
+  void clear() noexcept { count_ = 0; }            ///< [rt]
+  void add(const HalfSpace& half_space) noexcept;  ///< [rt] drops the oldest if there are four already
+  /// [rt] Returns the point of the common part that is nearest to p, and keeps only the half-spaces whose planes hold
+  /// it back. If the half-spaces have no common point, only the newest counts. The nearest point is the one that is
+  /// held by pushes alone: p plus positive multiples of the normals (Karush, Kuhn and Tucker; Nocedal and Wright,
+  /// Numerical Optimization, 2nd ed., 16.1). In space three planes at most can hold it.
+  Eigen::Vector3d nearestTo(const Eigen::Vector3d& p) noexcept;
+
+ private:
+  static constexpr int kMost = 4;
+  struct Subset {
+    std::array<int, 3> planes{};
+    int size = 0;
+  };
+  bool solve(const Subset& held, const Eigen::Vector3d& p, Eigen::Vector3d& x) const noexcept;
+  bool holds(const Eigen::Vector3d& x) const noexcept;
+  void keep(const Subset& held) noexcept;
+
+  std::array<HalfSpace, kMost> planes_{};
+  int count_ = 0;
+};
+
+}  // namespace hapticd::contact
