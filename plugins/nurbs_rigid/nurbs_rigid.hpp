@@ -56,7 +56,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                     HSP_P_LIVE | HSP_P_SAFETY),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
-        motionFields<NurbsRigid>(), formerFields<NurbsRigid>());
+        motionFields<NurbsRigid>(), laterFields<NurbsRigid>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

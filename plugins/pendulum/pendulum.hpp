@@ -47,7 +47,7 @@ class Pendulum final : public TracedShape {
             F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "angular velocity at the start"),
             F::array("limits", &Pendulum::limits_, "rad", 2, 0, 2, -1e3, 1e3, "[]",
                      "[lowest, highest]: end stops of the swing, angles as `angle`; []: no stops")},
-        formerFields<Pendulum>());
+        laterFields<Pendulum>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

@@ -31,7 +31,7 @@ class PushButton final : public TracedShape {
                                     "that may be left out; the button clicks where the force falls"),
                            F::real("end_stiffness", &PushButton::end_stiffness_, "N/m", 1, 1e6, 8000,
                                    "slope of the resistance beyond the last point of detent")},
-                formerFields<PushButton>());
+                laterFields<PushButton>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

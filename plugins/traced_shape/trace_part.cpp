@@ -130,13 +130,14 @@ Touch TracedShape::tracePart(const hsp_probe& probe, const hsp_step& step, hsp_c
     touch.status = HSP_E_ARG;
     return touch;
   }
-  brep::Tracer& tracer = part_tracers_[index];
-  if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) tracer.forgetContact();
+  if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) forgetContact(index);
   if ((probe.flags & HSP_IN_INVALID) != 0) return touch;
   brep::SearchBudget budget;
   if (step.max_iterations > 0) budget.elements = static_cast<int>(std::clamp<uint32_t>(step.max_iterations, 8, 256));
-  const contact::Foot foot = tracer.step(Eigen::Vector3d(probe.position), contactRule(), budget);
-  return answer(foot, contact);
+  const auto foot_at = [&, rule = contactRule()](const Eigen::Vector3d& p) {
+    return part_tracers_[index].step(p, rule, budget);
+  };
+  return answer(footOf(probe, index, foot_at), contact);
 }
 
 }  // namespace hapticd

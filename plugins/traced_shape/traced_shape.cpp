@@ -45,6 +45,7 @@ std::string readGeometry(const std::string& file) {
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   part_.reset();
   searches_ = {};
+  balls_.assign(probe_radius_ > 0 ? std::max(activation.max_probes, 1u) : 0, contact::BallProxy{});
   takeFormerNames();
   const std::string text = readGeometry(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
@@ -81,6 +82,7 @@ void TracedShape::deactivate() {
 void TracedShape::reset() noexcept HSP_RT {
   for (trace::Tracer& tracer : tracers_) tracer.reset();
   for (brep::Tracer& tracer : part_tracers_) tracer.reset();
+  for (contact::BallProxy& ball : balls_) ball.forget();
   for (OfferedFeet& offers : offers_) offers.count = 0;
   std::fill(searched_.begin(), searched_.end(), 1);
 }
@@ -120,26 +122,36 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
     return touch;
   }
   if ((probe.flags & HSP_IN_INVALID) != 0) {
-    tracers_[index].forgetContact();
+    forgetContact(index);
     return touch;
   }
   if ((probe.flags & HSP_IN_JUMP) != 0) searched_[index] = 0;
   if (searched_[index] == 0) beginAnew(index);
   offers_[index].count = 0;
-  touch = answer(tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step)), contact);
+  const auto foot_at = [&, options = optionsOf(step)](const Eigen::Vector3d& p) {
+    return tracers_[index].step(p, options);
+  };
+  touch = answer(footOf(probe, index, foot_at), contact);
   if (searched_[index] == 0 && touch.traced) {
     // The old foot is no longer near, and a foot on the way from it would push in a wrong direction. Until the next
     // search the foot is reported, but there is no force.
     contact.depth_m = touch.depth = -touch.foot.distance;
     contact.flags &= ~uint32_t{HSP_OUT_CONTACT | HSP_OUT_HELD};
     touch.status = HSP_DEGRADED;
+    if (!balls_.empty()) balls_[index].forget();
   }
   return touch;
 }
 
+void TracedShape::forgetContact(uint32_t probe) noexcept HSP_RT {
+  if (part_) part_tracers_[probe].forgetContact();
+  if (model_) tracers_[probe].forgetContact();
+  if (!balls_.empty()) balls_[probe].forget();
+}
+
 /// After a jump, traces only the feet that a search has offered since then, if there are any.
 void TracedShape::beginAnew(uint32_t probe) noexcept HSP_RT {
-  tracers_[probe].forgetContact();
+  forgetContact(probe);
   const uint32_t count = offers_[probe].count;
   if (count == 0) return;
   tracers_[probe].reset();
@@ -219,7 +231,9 @@ int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* ou
 
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
-  tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1], near.distance_m);
+  const double lag = balls_.empty() ? 0 : balls_[near.probe].lag();
+  tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1],
+                                std::max(near.distance_m - lag, 0.0));
   OfferedFeet& offers = offers_[near.probe];
   if (offers.count < offers.near.size()) offers.near[offers.count++] = near;
   return HSP_OK;

@@ -10,6 +10,7 @@
 #include "hapticd/shape.hpp"
 #include "hapticd/shape_names.h"
 #include "kernels/brep/contact/tracer.hpp"
+#include "kernels/contact/ball_proxy.hpp"
 #include "kernels/trace/tracer.hpp"
 #include "traced_shape/mesh.hpp"
 
@@ -61,13 +62,15 @@ class TracedShape : public Shape {
                 "more than this. 0: always the nearest face; default: the contact stays until the probe comes out")};
   }
 
-  /// Old names of parameters. They stand at the end of the table, because recordings refer to parameters by their
-  /// number.
+  /// Old names of parameters, and those that came later. They stand at the end of the table, because recordings refer
+  /// to parameters by their number.
   template <class T>
-  static constexpr auto formerFields() {
+  static constexpr auto laterFields() {
     using F = Fields<T>;
     return std::array{F::real("hold", &TracedShape::hold_, "m", kNotGiven, kHoldAlways, kNotGiven,
-                              "the former name of contact_hysteresis; -1 means that it is not given")};
+                              "the former name of contact_hysteresis; -1 means that it is not given"),
+                      F::real("probe_radius", &TracedShape::probe_radius_, "m", 0, kLargestProbe, 0,
+                              "radius of the ball that touches the model, about the tip of the arm; 0: a point")};
   }
 
   void deactivate();
@@ -102,12 +105,13 @@ class TracedShape : public Shape {
 
   std::string geometry_;
   int sides_ = kAuto, method_ = 1, iterations_ = 1, evaluation_ = 0;
-  double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven;
+  double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven, probe_radius_ = 0;
 
  private:
   /// [m] with a contact hysteresis of at least this, the contact never changes to another face
   static constexpr double kHoldAlways = 1;
   static constexpr double kNotGiven = -1;
+  static constexpr double kLargestProbe = 0.05;  ///< [m] half of the way at which surfaces are traced by default
   static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
@@ -132,6 +136,9 @@ class TracedShape : public Shape {
 
   const CachedSearch& searchAbout(const Eigen::Vector3d& p, double radius) const;
   void beginAnew(uint32_t probe) noexcept HSP_RT;
+  template <class FootAt>
+  contact::Foot footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT;
+  void forgetContact(uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -150,6 +157,7 @@ class TracedShape : public Shape {
   std::string instance_;
   std::unique_ptr<brep::Model> part_;
   std::vector<brep::Tracer> part_tracers_;  ///< one per probe
+  std::vector<contact::BallProxy> balls_;   ///< one per probe; empty if a point touches the model
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;            ///< one per probe
   std::vector<OfferedFeet> offers_;               ///< one per probe
@@ -161,6 +169,13 @@ class TracedShape : public Shape {
   hsp_ext_geometry geometry_extension_{};
   hsp_ext_names names_extension_{};
 };
+
+/// Returns the foot of a probe, or of the ball about it. @param foot_at function that traces a point
+template <class FootAt>
+contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT {
+  const Eigen::Vector3d p(probe.position);
+  return balls_.empty() || !p.allFinite() ? foot_at(p) : balls_[index].step(foot_at, p, probe_radius_);
+}
 
 template <class T>
 const void* TracedShape::tracedExtension(const char* name) {

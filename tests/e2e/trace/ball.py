@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""`hapticd trace` of a tip with a radius: it feels the surface on which its centre is when the ball just touches.
+
+Usage: ball.py HAPTICD     prints one line per case; exit 1 when one is off.
+"""
+import math
+import os
+import random
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+from traced import STIFFNESS, block, quad, trace
+
+HAPTICD = sys.argv[1]
+RADIUS = 0.003  # m
+BLOCK = block([-0.05, -0.05, -0.05], [0.05, 0.05, 0])  # its top is at z = 0
+WALL = block([0.02, -0.05, -0.02], [0.06, 0.05, 0.05])
+
+
+def roll(surfaces, points, parameters=None, **keys):
+    samples = [(i * 1e-3, *p) for i, p in enumerate(points)]
+    return trace(HAPTICD, surfaces, samples, {"probe_radius": RADIUS, **(parameters or {})}, **keys)[0]
+
+
+def line(a, b, count=200):
+    return [tuple(p + (q - p) * i / count for p, q in zip(a, b)) for i in range(count + 1)]
+
+
+def worst(rows, wanted):
+    """Largest error [N] of the forces."""
+    return max(math.dist((r["fx"], r["fy"], r["fz"]), force) for r, force in zip(rows, wanted))
+
+
+def about_block(p):
+    """Force on a ball about p by the formula of a block with round edges. p is outside of it."""
+    nearest = [min(max(x, low), high) for x, low, high in zip(p, (-0.05, -0.05, -0.05), (0.05, 0.05, 0))]
+    away = math.dist(p, nearest)
+    return [STIFFNESS * max(RADIUS - away, 0) * (x - y) / away for x, y in zip(p, nearest)]
+
+
+def convex():
+    around = [(0.05 + 0.002 * math.sin(a), 0.01, 0.002 * math.cos(a)) for a in (1e-3 * i for i in range(-500, 2000))]
+    rows = roll(BLOCK, around)
+    check("around a sharp edge the force turns and keeps its size", worst(rows, map(about_block, around)) < 1e-4)
+    chance, p, walk = random.Random(3), [0.0505, 0.0505, 0.002], []
+    while len(walk) < 3000:
+        q = [x + chance.gauss(0, 1e-4) - 0.01 * (x - y) for x, y in zip(p, (0.0505, 0.0505, 0.001))]
+        if max(q[0] - 0.05, q[1] - 0.05, q[2]) > 5e-4:
+            p = q
+            walk.append(tuple(p))
+    rows = roll(BLOCK, walk)
+    off = sorted(worst([r], [about_block(p)]) for r, p in zip(rows, walk))
+    check("so about a corner, wherever the tip goes", off[-30] < 1e-3 and off[-1] < 0.1, (off[-30], off[-1]))
+    check("the ball touches in many of these ticks", sum(r["contact"] for r in rows) > 1000)
+
+
+def concave():
+    points = line((0.01, 0, 0.01), (0.0185, 0, 0.001)) + line((0.0185, 0, 0.001), (0.0185, 0.01, -0.002))
+    rows = roll(BLOCK + WALL, points)
+    wanted = [[-STIFFNESS * max(x - 0.02 + RADIUS, 0), 0, STIFFNESS * max(RADIUS - z, 0)] for x, _, z in points]
+    check("in the corner of a wall both faces push", worst(rows, wanted) < 1e-4, worst(rows, wanted))
+    left, right = block([-0.05, -0.05, -0.05], [-0.002, 0.05, 0]), block([0.002, -0.05, -0.05], [0.05, 0.05, 0])
+    points = line((3e-4, 0, 0.006), (3e-4, 0, -0.004))
+    height = math.sqrt(RADIUS ** 2 - 0.002 ** 2)
+    rows = roll(left + right, points)
+    check("a ball of 6 mm stays above a slot of 4 mm", abs(rows[-1]["fz"] - STIFFNESS * (height + 0.004)) < 1e-3, rows[-1]["fz"])
+    points = line((3e-4, 0, 0.006), (3e-4, 0, -0.02))
+    check("a ball of 3 mm goes in", all(r["contact"] == 0 for r in roll(left + right, points, {"probe_radius": 0.0015})))
+
+
+def shells():
+    sheet = [quad([-0.05, -0.05, 0], [0.1, 0, 0], [0, 0.1, 0], "sheet")]
+    for side in (1, -1):
+        points = line((0, 0, side * 0.006), (0, 0, side * -0.004))
+        wanted = [[0, 0, side * STIFFNESS * max(RADIUS - side * z, 0)] for _, _, z in points]
+        check(f"a sheet keeps a ball on the side {side:+d}", worst(roll(sheet, points, {"sides": "both"}), wanted) < 1e-6)
+    around = [(0.05 + 0.002 * math.sin(a), 0, 0.002 * math.cos(a)) for a in (1e-3 * i for i in range(0, 3141))]
+    wanted = [[STIFFNESS * 1e-3 * math.sin(a), 0, STIFFNESS * 1e-3 * math.cos(a)] for a in (1e-3 * i for i in range(0, 3141))]
+    check("its free rim is round", worst(roll(sheet, around, {"sides": "both"}), wanted) < 1e-4)
+
+
+def states():
+    points = line((0, 0, 0.006), (0, 0, 0.001))
+    rows = roll(BLOCK, points + [(math.nan, 0, 0)] + [(0, 0, 0.001)] * 60)
+    check("a lost sample gives no force", rows[len(points)]["fz"] == 0)
+    check("and then the ball is where the tip is", abs(rows[-1]["fz"] - 2) < 1e-9, rows[-1]["fz"])
+    rows = roll(BLOCK, [(0, 0, 0.01)] * 200, path=[(0, 0, 0, 0, 1, 0, 0, 0), (0.1, 0, 0, 0.009, 1, 0, 0, 0), (0.2, 0, 0, 0.009, 1, 0, 0, 0)])
+    check("a block that comes to a ball pushes it", abs(rows[-1]["fz"] - 2) < 1e-9, rows[-1]["fz"])
+    check("the depth outside is minus the gap", abs(rows[0]["depth"] + 0.007) < 1e-12, rows[0]["depth"])
+
+
+convex()
+concave()
+shells()
+states()
+finish()
