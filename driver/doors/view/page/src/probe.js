@@ -56,11 +56,13 @@ export class Probe {
     this.resize(kUsualTip);
   }
 
-  /** Sets the size of the tip. @param size [m] radius of the drawn tip */
-  resize(size) {
+  /** Sets the size of the tip. @param size [m] radius of the drawn tip if it is a point
+   * @param ball [m] radius of the tip in the scene, 0 for a point */
+  resize(size, ball = 0) {
     this.size = size;
-    this.tip.scale.setScalar(size);
-    this.ghost.scale.setScalar(size * 1.3);
+    this.ball = ball;
+    this.tip.scale.setScalar(ball || size);
+    this.ghost.scale.setScalar((ball || size) * 1.3);
     this.foot.scale.setScalar(size * 1.4);
   }
 
@@ -76,9 +78,11 @@ export class Probe {
   update(now, contacts, wish) {
     this.tip.visible = now.valid;
     this.tipPlace.set(...now.position);
-    if (now.valid) this.tip.position.copy(this.tipPlace);
+    const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
+    // The felt surface of a ball is that of its centre, so the foot point is the centre of the ball that stays outside.
+    if (now.valid) this.tip.position.set(...(this.ball && best?.depth > 0 ? best.point : now.position));
     this.#force(new Vector3(...now.sent));
-    this.#foot(contacts);
+    this.#foot(best);
     this.ghost.visible = this.tether.visible = wish !== null;
     if (!wish) return;
     this.ghost.position.copy(wish);
@@ -90,21 +94,20 @@ export class Probe {
     this.shaft.visible = this.head.visible = visible;
     if (!visible) return;
     const direction = force.clone().divideScalar(size);
-    const length = this.size * (1.2 + size * kMetresPerNewton / kUsualTip), head = Math.min(length * 0.45, this.size * 2.4);
-    const neck = this.tipPlace.clone().addScaledVector(direction, length - head);
-    span(this.shaft, this.tipPlace, neck, this.size * 0.28);
+    const length = this.ball + this.size * (1.2 + size * kMetresPerNewton / kUsualTip), head = Math.min(length * 0.45, this.size * 2.4);
+    const neck = this.tip.position.clone().addScaledVector(direction, length - head);
+    span(this.shaft, this.tip.position, neck, this.size * 0.28);
     this.head.position.copy(neck).addScaledVector(direction, head / 2);
     this.head.quaternion.setFromUnitVectors(kUp, direction);
     this.head.scale.set(this.size * 0.72, head, this.size * 0.72);
   }
 
   /** Draws the foot point with the greatest depth; outside of contact this is the nearest one. */
-  #foot(contacts) {
-    const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
+  #foot(best) {
     const near = best !== null && best.depth > -12 * this.size && norm(best.normal) > 0.5;
     this.foot.visible = this.normal.visible = near && this.showForce;
     if (!near) return;
-    const point = new Vector3(...best.point), normal = new Vector3(...best.normal).normalize();
+    const normal = new Vector3(...best.normal).normalize(), point = new Vector3(...best.point).addScaledVector(normal, -this.ball);
     this.foot.position.copy(point).addScaledVector(normal, this.size * 0.06);
     this.foot.quaternion.setFromUnitVectors(kForward, normal);
     setSegment(this.normal, point, point.clone().addScaledVector(normal, this.size * 5));

@@ -90,11 +90,13 @@ export class View {
     });
   }
 
-  /** Sets the sizes of tip, floor and stains by the size of the scene. */
-  measure() {
+  /** Sets the sizes of tip, floor and stains by the size of the scene. A tip that has a radius is drawn with it.
+   * @param models the models of the scene with their parameters */
+  measure(models) {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
-    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006));
+    const ball = Math.max(0, ...models.map(({parameters}) => parameters?.find((p) => p.id === 'probe_radius')?.number ?? 0));
+    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), ball);
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';
     this.show('wire', this.shown.wire);
