@@ -65,7 +65,7 @@ Loop::Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSe
 }
 
 void Loop::beat() noexcept HSP_RT {
-  if (beat_ != nullptr) beat_->store(beat_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  beats_->store(beats_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
 /// Runs the dry cycles. No result is kept, so the ticks are the same with and without them.
