@@ -3,9 +3,11 @@
 /// daemon may have different rights. While a Scope object lives, its thread reads these files and no others, so that a
 /// client cannot use a name to open a file with the rights of the daemon.
 #pragma once
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/descriptors.hpp"
@@ -31,7 +33,9 @@ class PassedFiles {
   /// Returns the path at which the file can be opened; "" if it was neither passed nor allowed.
   std::string pathOf(const std::string& file) const;
   /// Returns the text with each path of pathOf() replaced by the name that the client gave.
-  std::string named(std::string text) const;
+  std::string named(std::string text) const { return naming()(std::move(text)); }
+  /// Returns a function that does the same, also after the files are closed.
+  std::function<std::string(std::string)> naming() const;
 
   /// [main] Makes this thread use the files as long as this object lives. The files must outlive the Scope object.
   class Scope {

@@ -68,6 +68,15 @@ std::string pathTo(const Descriptor& file) {
   return "/proc/self/fd/" + std::to_string(file.get());
 }
 
+void replaceAll(std::string& text, const std::string& path, const std::string& name) {
+  for (size_t at = 0; (at = text.find(path, at)) != std::string::npos;) {
+    const size_t end = at + path.size();
+    const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 in place of 1
+    if (!longer) text.replace(at, path.size(), name);
+    at += longer ? path.size() : name.size();
+  }
+}
+
 }  // namespace
 
 Result<PassedFiles> PassedFiles::copy(const std::vector<std::string>& names, std::vector<Descriptor> descriptors) {
@@ -100,17 +109,13 @@ std::string PassedFiles::pathOf(const std::string& file) const {
   return own_.count(file) > 0 ? file : "";
 }
 
-std::string PassedFiles::named(std::string text) const {
-  for (const auto& [name, copy] : copies_) {
-    const std::string path = pathTo(copy);
-    for (size_t at = 0; (at = text.find(path, at)) != std::string::npos;) {
-      const size_t end = at + path.size();
-      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 in place of 1
-      if (!longer) text.replace(at, path.size(), name);
-      at += longer ? path.size() : name.size();
-    }
-  }
-  return text;
+std::function<std::string(std::string)> PassedFiles::naming() const {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const auto& [name, copy] : copies_) pairs.emplace_back(pathTo(copy), name);
+  return [pairs](std::string text) {
+    for (const auto& [path, name] : pairs) replaceAll(text, path, name);
+    return text;
+  };
 }
 
 PassedFiles::Scope::Scope(const PassedFiles& files) noexcept : before_(std::exchange(in_force, &files)) {}

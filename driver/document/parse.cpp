@@ -307,7 +307,7 @@ using Parse = std::optional<Node> (*)(const std::string& text, const std::string
 
 /// Refuses files of other kinds and other encodings, and parses the rest.
 std::optional<Node> parseAny(const std::string& text, const std::string& file, Parse parse, Problems& problems) {
-  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
+  if (const std::string foreign = text.empty() ? "" : foreignFile(text, file); !foreign.empty()) {
     report(problems, file, 1, 1, "", foreign);
     return std::nullopt;
   }

@@ -2,13 +2,14 @@
 #include "push_button.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 namespace hapticd {
 namespace {
 
-// least component of the normal along the axis: on steeper flanks a push hardly moves the button
+// least component of the normal along the axis, of either sign: on steeper flanks a push hardly moves the button
 constexpr double kSteepest = 0.1;
 
 /// Returns the flags (HSP_OUT_*) of a step of the button. @param button the button after the step
@@ -34,6 +35,7 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   button_.reset();
   last_x2_ = stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
+  presses_.reserve(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   // greatest force of the detent: where the detent falls faster than the surface's spring, the button snaps, and the
@@ -49,22 +51,24 @@ void PushButton::reset() noexcept HSP_RT {
   stored_ = 0;
 }
 
-/// Returns the travel from the cap at rest to the probe, along the axis, measured on the cap at the probe; 0 if the
-/// button is not pressed. If the cap's normal is tilted, its stiffness counts with the square of the normal's component
-/// along the axis.
-PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
-  Press deepest;
+/// Lists the probes that may press, measured on the cap at each probe. If the cap's normal is tilted, its stiffness
+/// counts with the square of the normal's component along the axis. Returns false if it is not known whether the button
+/// is pressed.
+bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
+  presses_.clear();
+  bool blind = false, pressed = false;
   for (uint32_t i = 0; i < step.count; ++i) {
     const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
-    if ((probe.flags & HSP_IN_INVALID) != 0) deepest.blind = true;
+    blind |= (probe.flags & HSP_IN_INVALID) != 0;
     hsp_contact unused{};
     const Touch touch = trace(probe, step, unused);
     const double along = -touch.normal.dot(inward_);
-    if (!touch.traced || along < kSteepest || (touch.depth <= 0 && button_.position() <= 0)) continue;
+    if (!touch.traced || std::abs(along) < kSteepest) continue;
     const double travel = button_.position() + touch.depth / along;
-    if (travel > deepest.travel) deepest = {travel, along, deepest.blind};
+    presses_.push_back({stiffness_ * along * along, travel, along < 0});
+    pressed |= along > 0 && travel > 0;
   }
-  return deepest;
+  return pressed || !blind;
 }
 
 /// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of
@@ -72,11 +76,8 @@ PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
 hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
   uint32_t clicked = 0;  // HSP_OUT_* of a click in this step
   const MovingFrame before = MovingFrame::of(*step.pose);
-  if (step.dt_s > 0) {
-    const Press pressed = press(step);
-    if (pressed.travel > 0 || !pressed.blind)  // if a sample is lost, the button stays where it is
-      clicked = clickOf(button_, button_.step(stiffness_ * pressed.along * pressed.along, *curve_, pressed.travel));
-  }
+  if (step.dt_s > 0 && listPresses(step))  // if a sample is lost, the button stays where it is
+    clicked = clickOf(button_, button_.step(presses_, *curve_));
   const MovingFrame now = frame(step.dt_s);
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);

@@ -40,12 +40,7 @@ class PushButton final : public TracedShape {
   const void* extension(const char* name);
 
  private:
-  struct Press {
-    double travel = 0;   ///< [m] travel of the probe from the cap at rest, along the axis
-    double along = 1;    ///< component of the cap's normal along the axis
-    bool blind = false;  ///< true if some probe had no good sample
-  };
-  Press press(const hsp_step& step) noexcept HSP_RT;
+  bool listPresses(const hsp_step& step) noexcept HSP_RT;
   MovingFrame frame(double dt) noexcept HSP_RT;
 
   std::array<double, 3> axis_{};
@@ -54,6 +49,7 @@ class PushButton final : public TracedShape {
 
   std::optional<dynamics::DetentCurve> curve_;
   dynamics::ButtonState button_;
+  std::vector<dynamics::ButtonPress> presses_;  // of this step; it has room for all probes
   Eigen::Vector3d inward_{0, -1, 0};
   Eigen::Vector3d rest_{0, 0, 0};        // position of the model frame with the button at rest, in the world
   Eigen::Quaterniond turn_{1, 0, 0, 0};  // orientation of the model, in the world

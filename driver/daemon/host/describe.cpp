@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "host/child.hpp"
 #include "host/class_params.hpp"
@@ -47,6 +48,23 @@ std::string wrongIn(const ParamInfo& p) {
   return "";
 }
 
+/// True if the text has no control characters. Names are written to terminals, and to files of one name per line.
+bool isPlain(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+}
+
+/// Throws if recordings and messages could not name the class.
+template <class Class>
+void checkNames(const Class& given, const ClassInfo& info) {
+  if (info.name.empty()) throw std::runtime_error("one of its classes has no name");
+  if (!isPlain(info.name) || !isPlain(info.id))
+    throw std::runtime_error(
+        "one of its classes has an id or a name that is not plain text; expected no control characters");
+  for (const auto& [text, what] : {std::pair{given.id, "id"}, {given.version, "version"}})
+    if (text == nullptr)
+      throw std::runtime_error("class '" + info.name + "' has no " + what + "; expected a text, not NULL");
+}
+
 template <class Class>
 ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& file, uint32_t minor) {
   ClassInfo info{kind,
@@ -59,7 +77,7 @@ ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& 
                  minor,
                  {},
                  file};
-  if (info.name.empty()) throw std::runtime_error("one of its classes has no name");
+  checkNames(given, info);
   if (!complete(given))
     throw std::runtime_error("class '" + info.name +
                              "' lacks a required function; expected all functions of version 1.0 of the interface");

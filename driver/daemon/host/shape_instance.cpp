@@ -23,6 +23,18 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
   return found != nullptr && found->struct_size >= needed ? found : nullptr;
 }
 
+bool complete(const hsp_ext_surfaces& surfaces) {
+  return surfaces.nearby != nullptr && surfaces.activate != nullptr && surfaces.deactivate != nullptr;
+}
+
+bool complete(const hsp_ext_geometry& geometry) {
+  return geometry.tessellate != nullptr && geometry.bounds != nullptr;
+}
+
+bool complete(const hsp_ext_energy& energy) {
+  return energy.stored != nullptr;
+}
+
 constexpr uint32_t kMostSurfaces = 1'000'000;  ///< limit, since the search keeps an entry per surface and probe
 constexpr uint32_t kMostVertices = 1'000'000;  ///< limit for drawing: three buffers of 12 MB each
 
@@ -120,17 +132,29 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
     deactivate();
     return Error{who + wrong};
   }
-  surfaces_ = extensionOf<hsp_ext_surfaces>(*class_, shape_, HSP_EXT_SURFACES, sizeof(hsp_ext_surfaces));
-  surface_count_ = surfaces_ != nullptr ? surfaces_->surface_count : 0;
-  if (surface_count_ > kMostSurfaces) {
+  if (const std::string wrong = findExtensions(); !wrong.empty()) {
     deactivate();
-    return Error{who + "it has " + std::to_string(surface_count_) + " surfaces; expected at most " +
-                 std::to_string(kMostSurfaces) + "\n  fix: divide the model, or repair the plugin"};
+    return Error{who + wrong};
   }
-  geometry_ = extensionOf<hsp_ext_geometry>(*class_, shape_, HSP_EXT_GEOMETRY, sizeof(hsp_ext_geometry));
-  energy_ = extensionOf<hsp_ext_energy>(*class_, shape_, HSP_EXT_ENERGY, sizeof(hsp_ext_energy));
   if (report_.viz_vertices > 0) contour_ = std::make_unique<Contour>(report_.viz_vertices);
   return {};
+}
+
+/// Asks the shape for its extensions. @return what is wrong with one of them, or ""
+std::string ShapeInstance::findExtensions() {
+  surfaces_ = extensionOf<hsp_ext_surfaces>(*class_, shape_, HSP_EXT_SURFACES, sizeof(hsp_ext_surfaces));
+  geometry_ = extensionOf<hsp_ext_geometry>(*class_, shape_, HSP_EXT_GEOMETRY, sizeof(hsp_ext_geometry));
+  energy_ = extensionOf<hsp_ext_energy>(*class_, shape_, HSP_EXT_ENERGY, sizeof(hsp_ext_energy));
+  const char* const hollow = surfaces_ != nullptr && !complete(*surfaces_)   ? HSP_EXT_SURFACES
+                             : geometry_ != nullptr && !complete(*geometry_) ? HSP_EXT_GEOMETRY
+                             : energy_ != nullptr && !complete(*energy_)     ? HSP_EXT_ENERGY
+                                                                             : nullptr;
+  if (hollow != nullptr)
+    return std::string("its extension ") + hollow + " lacks a function; expected all of them, or NULL in its place";
+  surface_count_ = surfaces_ != nullptr ? surfaces_->surface_count : 0;
+  if (surface_count_ <= kMostSurfaces) return "";
+  return "it has " + std::to_string(surface_count_) + " surfaces; expected at most " + std::to_string(kMostSurfaces) +
+         "\n  fix: divide the model, or repair the plugin";
 }
 
 void ShapeInstance::deactivate() {

@@ -86,6 +86,7 @@ class ShapeInstance {
   bool active() const { return active_; }
 
  private:
+  std::string findExtensions();
   ShapeInstance(std::shared_ptr<Library> library, const scene::Model& model, Services::Log log);
   std::shared_ptr<Library> library_;
   std::string name_;

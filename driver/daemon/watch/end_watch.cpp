@@ -52,7 +52,8 @@ void EndWatch::check(Nanoseconds now) noexcept {
 /// that slept, does not count as hanging.
 void EndWatch::checkForHang(uint64_t ticks) noexcept {
   const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();
-  const bool same = std::exchange(tick_begun_, begun) == begun && begun != 0 && ticks == ticks_;
+  const bool watched = begun != 0 || servo_.drives();  // between its ticks a command without a servo may set up a model
+  const bool same = std::exchange(tick_begun_, begun) == begun && watched && ticks == ticks_;
   if (!same) looked_ = 0, cpu_before_ = cpu;
   looked_ += kLookEvery;
   if (same && (cpu - cpu_before_ >= kHungAfter || looked_ >= kWaitsAfter)) hung_();

@@ -12,6 +12,7 @@ namespace hapticd::watch {
 class IdleTarget : public WatchTarget {
  public:
   uint64_t ticks() const noexcept override { return 0; }
+  uint64_t beats() const noexcept override { return 0; }
   Nanoseconds tickBegun() const noexcept override { return 0; }
   Nanoseconds nextTick() const noexcept override { return 0; }
   Nanoseconds cpuTime() const noexcept override { return 0; }

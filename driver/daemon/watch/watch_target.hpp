@@ -14,6 +14,7 @@ class WatchTarget {
  public:
   virtual ~WatchTarget() = default;
   virtual uint64_t ticks() const noexcept = 0;         ///< number of ticks so far
+  virtual uint64_t beats() const noexcept = 0;         ///< number of ticks and dry cycles so far
   virtual Nanoseconds tickBegun() const noexcept = 0;  ///< CLOCK_MONOTONIC start of the tick in progress; 0: none is
   /// CLOCK_MONOTONIC time by which the next tick must have begun; 0 if there will be none.
   virtual Nanoseconds nextTick() const noexcept = 0;

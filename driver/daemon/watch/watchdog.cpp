@@ -33,7 +33,16 @@ bool Watchdog::check(Nanoseconds now) noexcept {
   // In a simulation, late ticks can hurt nobody.
   if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return checkPhase({tick, true}, now - next, seen);
   phase_ = {};
+  watchResting();
   return false;
+}
+
+/// Ends the process if a module does not return from a call in which no motor needs to be cut: before the first tick,
+/// and between the ticks of a simulation. Time is counted as in watchHung().
+void Watchdog::watchResting() noexcept {
+  const uint64_t beats = servo_.beats();
+  if (std::exchange(beats_, beats) != beats || servo_.inServo() == nullptr) checks_since_beat_ = 0;
+  if (++checks_since_beat_ * kCheckEvery == (servo_.simulated() ? kHungSimulated : kHungAfter)) hung_();
 }
 
 /// Ends the process if its end was asked for some time ago: a plugin that takes long, or never returns, must not delay

@@ -27,7 +27,7 @@ class Watchdog {
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// [ns] longest delay of the next tick. In a virtual machine it is longer, because the host pauses single processors.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer counts as hanging
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick or dry cycle that takes longer hangs
   /// [ns] a tick of a simulation that takes longer counts as hanging. In less time the servo may only have had no
   /// processor, which is not a module's fault. But a simulation that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
@@ -71,6 +71,7 @@ class Watchdog {
   void watchEnd() noexcept;
   Nanoseconds patience(Phase phase) const noexcept;
   void watchHung(Phase phase) noexcept;
+  void watchResting() noexcept;
   bool mayBePaused(Phase phase, Nanoseconds stuck) const noexcept;
 
   WatchTarget& servo_;
@@ -79,7 +80,8 @@ class Watchdog {
 
   Phase cut_in_;  ///< the phase in which the motors were last cut; they are cut only once in each phase
   Phase phase_;
-  Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
+  Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0, checks_since_beat_ = 0;
+  uint64_t beats_ = 0;
   bool hung_told_ = false;
   Nanoseconds cpu_at_phase_ = 0;
   Nanoseconds looked_at_ = 0;  ///< time of the last check

@@ -82,6 +82,7 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   settings.evaluation_ns = options.evaluation_ns;
   settings.spare_models = options.spare_models;
   settings.former_claims = options.former_claims;
+  settings.gaps_jump = options.gaps_jump;
   settings.keep_disabled = options.keep_disabled;
   for (uint32_t i = 0; i < models.size() && options.keep_disabled; ++i)
     if (!scene.models[i].enabled) world->proximity_->remove(i);  // until wake()

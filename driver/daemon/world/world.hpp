@@ -25,6 +25,7 @@ struct WorldOptions {
   double evaluation_ns = 0;
   double max_force = 0;        ///< [N] largest force that any arm lets through to the hand; 0: unknown
   bool former_claims = false;  ///< for old recordings, see CoreSettings
+  bool gaps_jump = false;      ///< see CoreSettings
   /// true: models that the scene disables are not traced until they are enabled, as in a run; false: they are as if
   /// enabled, for tools that judge all models
   bool keep_disabled = false;

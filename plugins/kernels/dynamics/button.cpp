@@ -133,41 +133,87 @@ Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel)
   return all;
 }
 
-/// Finds the stable equilibrium that the button reaches from its present position. The force on the button, k1 (travel
-/// - x2) - F2(x2), gives its direction, and it stops at the first stable equilibrium in this direction.
-ButtonState::Step ButtonState::step(double k1, const DetentCurve& detent, double travel) noexcept {
+namespace {
+
+/// Several springs that act together are one spring.
+struct Spring {
+  double k1 = 0, travel = 0;
+};
+
+/// True if the surface reaches the probe once the button moves on from x2.
+bool acts(const ButtonPress& press, double x2, bool inward) noexcept {
+  return press.behind == (press.travel == x2 ? inward : press.travel < x2);
+}
+
+Spring springOf(std::span<const ButtonPress> presses, double x2, bool inward) noexcept {
+  Spring all;
+  for (const ButtonPress& press : presses) {
+    if (!acts(press, x2, inward)) continue;
+    all.k1 += press.stiffness;
+    all.travel += (press.travel - all.travel) * (press.stiffness / all.k1);
+  }
+  return all;
+}
+
+/// Returns the first travel on the way from x2 to `end` at which a surface begins or ceases to reach a probe; else
+/// `end`.
+double firstChange(std::span<const ButtonPress> presses, double x2, double end) noexcept {
+  for (const ButtonPress& press : presses)
+    if ((press.travel - x2) * (end - press.travel) > 0) end = press.travel;
+  return end;
+}
+
+/// Finds the first stable equilibrium in the direction in which the button moves; nullptr if there is none.
+const Equilibrium* ahead(const Equilibria& all, double x2, bool inward) noexcept {
+  for (int n = 0; n < all.count; ++n) {
+    const Equilibrium& e = all.at[static_cast<size_t>(inward ? n : all.count - 1 - n)];
+    if (e.stable && (inward ? e.x2 >= x2 : e.x2 <= x2)) return &e;
+  }
+  for (int i = 0; i < all.count; ++i)
+    if (all.at[static_cast<size_t>(i)].stable) return &all.at[static_cast<size_t>(i)];
+  return nullptr;
+}
+
+}  // namespace
+
+/// Finds the stable equilibrium that the button reaches from its present position. The force on the button gives its
+/// direction, and it stops at the first stable equilibrium in this direction. On its way surfaces may begin or cease to
+/// reach a probe, and the rest of the way has other springs.
+ButtonState::Step ButtonState::step(std::span<const ButtonPress> presses, const DetentCurve& detent) noexcept {
   Step result;
-  if (!(travel > 0) || !std::isfinite(travel)) {
-    result.clicked = pressed_;
-    reset();
+  const double before = x2_;
+  const Spring first = springOf(presses, x2_, false);
+  const bool inward = first.k1 * (first.travel - x2_) >= detent.force(x2_);
+  for (size_t changes = 0; changes <= presses.size(); ++changes) {
+    const Spring spring = springOf(presses, x2_, inward);
+    const bool pressed = spring.k1 > 0 && spring.travel > 0 && std::isfinite(spring.travel);
+    const Equilibria all = buttonEquilibria(spring.k1, detent, pressed ? spring.travel : 0);
+    const Equilibrium* const reached = ahead(all, x2_, inward);
+    if (reached == nullptr) return result;
+    result.at = *reached;
+    x2_ = firstChange(presses, x2_, reached->x2);
+    if (x2_ != reached->x2) continue;
+    if (pressed) {
+      noteClick(result, spring.k1, detent, before);
+    } else {
+      result.clicked = pressed_;
+      reset();
+    }
     return result;
   }
-  const Equilibria all = buttonEquilibria(k1, detent, travel);
-  if (all.count == 0) return result;
-  const bool inward = k1 * (travel - x2_) >= detent.force(x2_);
-  int chosen = -1;
-  for (int n = 0; n < all.count; ++n) {
-    const int i = inward ? n : all.count - 1 - n;
-    const Equilibrium& e = all.at[static_cast<size_t>(i)];
-    const bool ahead = inward ? e.x2 >= x2_ : e.x2 <= x2_;
-    if (!e.stable) continue;
-    if (ahead && chosen < 0) chosen = i;
-  }
-  for (int i = 0; chosen < 0 && i < all.count; ++i)
-    if (all.at[static_cast<size_t>(i)].stable) chosen = i;
-  if (chosen < 0) return result;
-  result.at = all.at[static_cast<size_t>(chosen)];
-  const int top = topOf(detent);
-  if (top >= 0) {
-    const double over = detent.knot(top).travel, back = detent.knot(footOf(detent, top)).travel;
-    const bool snaps = k1 + detent.slope(top) < 0;
-    result.snapped = snaps && ((x2_ <= over && result.at.x2 >= back) || (x2_ >= back && result.at.x2 <= over));
-    const bool now = pressed_ ? result.at.x2 > over : (snaps ? result.at.x2 >= back : result.at.x2 > over);
-    result.clicked = now != pressed_;
-    pressed_ = now;
-  }
-  x2_ = result.at.x2;
   return result;
+}
+
+/// Notes whether the button went past its detent, or came back. @param before [m] its travel before the step
+void ButtonState::noteClick(Step& step, double k1, const DetentCurve& detent, double before) noexcept {
+  const int top = topOf(detent);
+  if (top < 0) return;
+  const double over = detent.knot(top).travel, back = detent.knot(footOf(detent, top)).travel;
+  const bool snaps = k1 + detent.slope(top) < 0;
+  step.snapped = snaps && ((before <= over && x2_ >= back) || (before >= back && x2_ <= over));
+  const bool now = pressed_ ? x2_ > over : (snaps ? x2_ >= back : x2_ > over);
+  step.clicked = now != pressed_;
+  pressed_ = now;
 }
 
 }  // namespace hapticd::dynamics

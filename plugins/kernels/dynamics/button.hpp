@@ -52,6 +52,14 @@ struct Equilibria {
 /// faster than k1 there is more than one, and the button snaps.
 Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel) noexcept;
 
+/// A probe that may press on the button. Its force [N] is stiffness * (travel - x2) along the way of the button, or 0
+/// if the surface does not reach the probe.
+struct ButtonPress {
+  double stiffness = 0;  ///< [N/m] of the surface, along the way of the button
+  double travel = 0;     ///< [m] travel of the button at which the surface just touches the probe
+  bool behind = false;   ///< true: the probe is behind the button, and pushes it out
+};
+
 /// [rt] Follows the button's present branch of equilibria. At the end of the branch the button snaps to another branch,
 /// so its motion has hysteresis.
 class ButtonState {
@@ -62,11 +70,16 @@ class ButtonState {
     bool clicked = false;
     bool snapped = false;  ///< the button jumped from one branch of equilibria to another
   };
-  /// [rt] Advances the button by one tick.
+  /// [rt] Advances the button by one tick. The forces of all probes together balance the detent.
+  Step step(std::span<const ButtonPress> presses, const DetentCurve& detent) noexcept;
+  /// [rt] The same for one probe.
   /// @param k1 [N/m] spring of the surface
   /// @param travel [m] travel of the probe from the surface of the button at rest; if it is <= 0, there is no contact
   /// and the button is at rest
-  Step step(double k1, const DetentCurve& detent, double travel) noexcept;
+  Step step(double k1, const DetentCurve& detent, double travel) noexcept {
+    const ButtonPress press{k1, travel};
+    return step({&press, 1}, detent);
+  }
   void reset() noexcept {
     x2_ = 0;
     pressed_ = false;
@@ -75,6 +88,8 @@ class ButtonState {
   bool pressed() const noexcept { return pressed_; }  ///< true if the button is past its detent
 
  private:
+  void noteClick(Step& step, double k1, const DetentCurve& detent, double before) noexcept;
+
   double x2_ = 0;
   bool pressed_ = false;
 };

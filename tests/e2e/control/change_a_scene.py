@@ -158,7 +158,8 @@ def scene_without_an_arm(environment, folder):
         file.write("hapticd: 1\nmodels:\n" + BALL.format(source=SOURCE, name="plain", x=0.1))
     with open(os.path.join(folder, "owner.yaml"), "w") as file:
         file.write("hapticd: 1\ndevice: own-arm.yaml\nmodels: []\n")
-    run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "owner.yaml"), "--name", "owner"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    log = os.path.join(folder, "owner.log")
+    run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "owner.yaml"), "--name", "owner", "--log-file", log], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     atexit.register(run.kill)
     waited = subprocess.run([HAPTICD, "ctl", "--name", "owner", "--wait", "30", "status"], env=environment, capture_output=True, text=True, timeout=60)
     check("ctl waits for a daemon that starts", waited.returncode == 0 and '"ok": true' in waited.stdout, waited)
@@ -173,6 +174,15 @@ def scene_without_an_arm(environment, folder):
                           text=True, timeout=60)
     check("a misspelt file is told as check tells it", done.returncode == 1 and "there is no file /" in done.stderr and
           '(did you mean "sphere.yaml"?)' in done.stderr and "passed along" not in done.stderr, done)
+    broken = os.path.join(folder, "broken.hpart")
+    with open(os.path.join(SOURCE, "config", "models", "dm1.hpart"), "rb") as whole, open(broken, "wb") as part:
+        part.write(whole.read(1000))
+    with open(os.path.join(folder, "cut.yaml"), "w") as file:
+        file.write(f"hapticd: 1\nmodels:\n  - {{name: cut, plugin: nurbs_rigid, parameters: {{geometry: {broken}}}}}\n")
+    subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "cut.yaml")], env=environment, capture_output=True, timeout=60)
+    with open(log) as lines:
+        told = [line for line in lines if "cut: " in line]
+    check("the log names the file that a model could not be made of", told and all(broken in line and "/proc/" not in line for line in told), told)
     run.terminate()
     run.wait(timeout=30)
 

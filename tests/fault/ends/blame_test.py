@@ -12,7 +12,7 @@ from multiprocessing.pool import ThreadPool
 here = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [here, os.path.join(here, "..", "..", "support"), os.path.join(here, "..", "..", "support", "rig")]
 from daemon import Daemon
-from e2e import check, finish
+from e2e import check, finish, until
 from rig import HANG_IN_READ, HANG_IN_WAIT, HANG_IN_WRITE
 
 HAPTICD, *MODULES, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:5])
@@ -55,11 +55,24 @@ def device(fault):
             (f"{fault[0]}: no plugin is in quarantine", run.quarantined() == "", run.quarantined())]
 
 
+def device_in_its_dry_cycles(fault):
+    """Before READY, when no force was sent yet."""
+    run = daemon(rig={"paces": "true"}, servo="{pace: device}", arguments=("--rate", "1000", "--for", "1"))
+    until(lambda: run.arm.count() > 2)  # it has started, and gets commands
+    run.arm.wish(fault[1])
+    code, said = run.end()
+    words = f"{fault[0]} in the dry cycles: "
+    return [(words + "the device is named",
+             code == 1 and "device module 'rig' of device 'rig' was ended by" in said and "ready" not in said, (code, said)),
+            (words + "no force was sent", not any(entry.on for entry in run.arm.entries()), said)]
+
+
+HANGS = (("a read that hangs", HANG_IN_READ), ("a write that hangs", HANG_IN_WRITE), ("a wait for samples that hangs", HANG_IN_WAIT))
+
 for checks in ThreadPool(2).imap(lambda call: call[0](call[1]),
                                  [(blamed, where) for where in ("reset", "stored", "search", "start_tracing")] +
                                  [(blamed_at_the_end, where) for where in ("taken_down", "destroyed")] +
-                                 [(device, fault) for fault in (("a read that hangs", HANG_IN_READ), ("a write that hangs", HANG_IN_WRITE),
-                                                                ("a wait for samples that hangs", HANG_IN_WAIT))]):
+                                 [(call, fault) for call in (device, device_in_its_dry_cycles) for fault in HANGS]):
     for told in checks:
         check(*told)
 

@@ -6,13 +6,14 @@ Usage: ends_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints one line per chec
 import os
 import signal
 import sys
+import tempfile
 import time
 from multiprocessing.pool import ThreadPool
 
 here = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [here, os.path.join(here, "..", "..", "support"), os.path.join(here, "..", "..", "support", "rig")]
 from daemon import Daemon
-from e2e import check, finish
+from e2e import check, finish, until, write
 from rig import COMMAND, CUT
 
 HAPTICD, MODULE, SHAPES = (os.path.abspath(argument) for argument in sys.argv[1:4])
@@ -158,4 +159,37 @@ check("continued it ticks, without a force", run.arm.entries()[-1].time_ns > beg
 run.process.terminate()
 code, said = run.end()
 check("and ends when it is told to", code == 0 and "ctl clear" in said, (code, said))
+
+
+def walk(arm, begin, end):
+    for i in range(101):
+        arm.move(0, begin + (end - begin) * i / 100, 0)
+        time.sleep(0.002)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    sheet = write(folder, "sheet.yaml", "format: hapticd-model/1\nsurfaces:\n- {degree: [1, 1], knots: [[0, 0, 1, 1], [0, 0, 1, 1]], points: "
+                  "[[-0.1, 0, -0.1], [-0.1, 0, 0.1], [0.1, 0, -0.1], [0.1, 0, 0.1]]}\n")
+    run = Daemon(HAPTICD, [MODULE, SHAPES], [f"{{name: sheet, plugin: nurbs_rigid, parameters: {{geometry: {sheet}, sides: both}}}}"],
+                 rig={"position": "[0, 0.02, 0]"}, arguments=("--rate", "1000"))
+    until(lambda: run.arm.count() > 2100)  # after the dry cycles
+    walk(run.arm, 0.02, -0.004)
+    run.ctl("clear")  # of a busy machine's cut
+    check("Ctrl-Z beside a sheet: it is felt from above", run.arm.wait_for_force())
+    walk(run.arm, -0.004, 0.02)
+    run.process.send_signal(signal.SIGTSTP)
+    until(lambda: run.state() == "T")
+    run.arm.move(0, -0.01, 0)  # round it, while no tick sees the way
+    time.sleep(0.3)
+    begun = time.monotonic_ns()
+    run.process.send_signal(signal.SIGCONT)
+    time.sleep(0.3)
+    run.ctl("clear")
+    time.sleep(0.5)
+    check("a hand that came to its other side meanwhile is not pulled through it", not run.arm.commands_after(begun),
+          [entry.force for entry in run.arm.commands_after(begun)[-1:]])
+    walk(run.arm, -0.01, 0.004)
+    check("and feels it from there", run.arm.wait_for_force() and run.arm.force()[1] < 0, run.arm.force())
+    run.process.terminate()
+    run.end()
 finish()

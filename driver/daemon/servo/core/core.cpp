@@ -173,6 +173,7 @@ void Core::receiveRecords() noexcept HSP_RT {
 }
 
 void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  const bool unseen = settings_.gaps_jump && dt > kLongestGap;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     jumped_[i] = 0;
     if (!probes[i].valid) {
@@ -180,7 +181,7 @@ void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
       continue;
     }
     const double travel = (probes[i].position - last_position_[i]).norm();
-    if (seen_[i] != 0 && travel > settings_.max_probe_speed * dt) {
+    if (seen_[i] != 0 && (unseen || travel > settings_.max_probe_speed * dt)) {
       jumped_[i] = 1;
       needs_search_ = true;
     }

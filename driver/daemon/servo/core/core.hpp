@@ -87,6 +87,9 @@ struct CoreSettings {
   double evaluation_ns = 0;
   /// for old recordings: torques are not bounded, nor is the step after a parameter was set
   bool former_claims = false;
+  /// true: after a gap of more than kLongestGap between two ticks every probe has jumped, as in a run. Tools that step
+  /// over rows of a file may have rows as far apart as they like
+  bool gaps_jump = false;
   bool keep_disabled = false;  ///< false: models that the scene disables are enabled, see WorldOptions
 };
 
@@ -104,6 +107,8 @@ class Core {
   /// [s] A model that came, or was enabled, is felt once no tip has been inside for this time. Until it was searched
   /// for, no tip seems to be inside; a search runs every 5 ms, less often on a busy machine.
   static constexpr double kFreeFor = 0.05;
+  /// [s] After a longer gap between two ticks nobody knows which way a probe went.
+  static constexpr double kLongestGap = 0.1;
 
   /// [main] @param models active shapes in the order of the scene, in the poses in which they were activated
   Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,

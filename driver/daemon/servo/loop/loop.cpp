@@ -15,7 +15,6 @@ namespace hapticd::servo {
 namespace {
 
 constexpr uint64_t kWarmUpTicks = 200;  ///< page faults and allocations are counted only after these ticks
-constexpr double kLateFault = 0.1;  ///< [s] a longer gap between two ticks is a fault, because the last force stayed on
 
 bool isToArm(const Order& order) noexcept HSP_RT {
   switch (order.kind) {
@@ -65,7 +64,7 @@ Loop::Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSe
 }
 
 void Loop::beat() noexcept HSP_RT {
-  if (beat_ != nullptr) beat_->store(beat_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  beats_->store(beats_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
 /// Runs the dry cycles. No result is kept, so the ticks are the same with and without them.
@@ -103,7 +102,7 @@ void Loop::run() noexcept {
     tick_begun_.store(begun, std::memory_order_relaxed);
     search_time_ = listen_time_ = 0;
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
-    if (dt > kLateFault && !onlySimulated(arms_)) trip(Fault::kLate, dt);
+    if (dt > Core::kLongestGap && !onlySimulated(arms_)) trip(Fault::kLate, dt);  // the last force stayed on meanwhile
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     log_.begin(deadline, arms_);
     tick({n, deadline, t, dt});

@@ -39,7 +39,7 @@ class Loop {
 
   /// [main] Called before run(). @param count the loop increments it in each dry cycle and each tick, so that a
   /// watchdog sees that the servo runs; it must outlive the run
-  void beatOn(std::atomic<uint64_t>& count) { beat_ = &count; }
+  void beatOn(std::atomic<uint64_t>& count) { beats_ = &count; }
 
   /// [rt] Runs until all ticks are done, or until a stop has ramped the forces down. Call it once.
   void run() noexcept;
@@ -78,6 +78,8 @@ class Loop {
 
   /// [any] Returns the number of ticks done so far, for watchdogs and status lines.
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
+  /// [any] Returns the number of dry cycles and ticks done so far.
+  uint64_t beats() const noexcept { return beats_->load(std::memory_order_relaxed); }
   /// [any] True if the core lost a track or saw a jump, so that a proximity search is needed now.
   bool needsSearch() const noexcept { return needs_search_.load(std::memory_order_relaxed); }
   /// [any] Returns the CLOCK_MONOTONIC time at which the tick in progress began, or 0 between two ticks.
@@ -120,7 +122,8 @@ class Loop {
   Door door_;
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
-  std::atomic<uint64_t>* beat_ = nullptr;
+  std::atomic<uint64_t> own_beats_{0};
+  std::atomic<uint64_t>* beats_ = &own_beats_;
   double epoch_ = 0;  ///< [s] time of the first tick; CLOCK_MONOTONIC if the run uses the real clock
   // In virtual time the proximity search runs in this thread too. The time of the search does not count as compute.
   Nanoseconds search_time_ = 0;

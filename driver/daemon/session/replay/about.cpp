@@ -182,6 +182,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const Arms
                {"slow_arms_push_less", !facts.full_when_slow},
                {"depth_of_felt_models", !facts.counts_unfelt},
                {"spares_steady_pushes", !facts.former_passivity},
+               {"gaps_are_jumps", !facts.follows_gaps},
                {"models", modelsJson(world)},
                {"devices", std::move(devices)},
                {"files", filesJson(scene)}};
@@ -206,6 +207,7 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     run.facts.full_when_slow = !json.value("slow_arms_push_less", false);
     run.facts.counts_unfelt = !json.value("depth_of_felt_models", false);
     run.facts.former_passivity = !json.value("spares_steady_pushes", false);
+    run.facts.follows_gaps = !json.value("gaps_are_jumps", false);
     run.version = json.at("hapticd");
     run.started = json.at("started");
     run.instructions = json.value("instructions", "");

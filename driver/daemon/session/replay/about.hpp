@@ -26,6 +26,7 @@ struct RunFacts {
   bool full_when_slow = false;    ///< old version: slow real arms pushed with their full force
   bool former_passivity = false;  ///< old version: a program's steady push counted as created energy
   bool counts_unfelt = false;     ///< old version: the depth of a tick was the deepest of all models, felt or not
+  bool follows_gaps = false;      ///< old version: a long gap between two ticks was no jump of the probes
 };
 
 /// [main] Describes the run. @param streams the result of flightStreams()

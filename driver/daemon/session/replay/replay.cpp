@@ -311,6 +311,7 @@ Result<void> Replay::buildWorld(const host::Services::Log& log) {
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
   options.max_force = maxForceOf(scene, run_.devices);
   options.former_claims = run_.facts.former_claims;
+  options.gaps_jump = !run_.facts.follows_gaps;
   options.keep_disabled = true;
   options.spare_models = LaterModels::placesFor(run_.later, scene.models.size());
   const SetupWatch waiting(log);

@@ -194,10 +194,15 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
 /// Builds these models and describes them, which may take long.
 Result<std::vector<RequestHandler::Coming>> RequestHandler::prepare(const std::vector<scene::Model>& models) {
   std::vector<Coming> coming;
+  host::Services::Log log = log_;
+  if (passed_)  // the log names files as the program does
+    log = [log = log_, named = passed_->naming()](int level, const std::string& who, const std::string& text) {
+      log(level, who, named(text));
+    };
   const SetupWatch waiting(log_, 5, "the other models are felt, but no request is answered until it returns");
   for (const scene::Model& model : models) {
     const scene::Model readable = passed_ ? withPaths(model, *passed_) : model;
-    auto shape = runner_.world().prepare(readable, log_);
+    auto shape = runner_.world().prepare(readable, log);
     if (!shape) return Error{shape.error()};
     std::string description = describeModel(model, readable, (*shape)->description(), kMarkBytes * kMostMarks);
     coming.push_back({std::move(*shape), std::move(description)});

@@ -55,6 +55,7 @@ Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, con
   world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
   world_options.measure = true;
   world_options.keep_disabled = true;
+  world_options.gaps_jump = true;
   world_options.spare_models = options.spare_models;
   world_options.max_force = maxForceOf(scene);
   world_options.budgets = !options.virtual_time;  // a budget of real time would make two virtual runs differ

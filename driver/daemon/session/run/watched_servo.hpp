@@ -16,6 +16,7 @@ class WatchedServo final : public watch::WatchTarget {
   WatchedServo(Loop& loop, Arms& arms, const Telemetry& telemetry);
 
   uint64_t ticks() const noexcept override { return loop_.ticks(); }
+  uint64_t beats() const noexcept override { return loop_.beats(); }
   Nanoseconds tickBegun() const noexcept override { return loop_.tickBegun(); }
   Nanoseconds nextTick() const noexcept override { return loop_.nextTick(); }
   Nanoseconds cpuTime() const noexcept override { return loop_.cpuTime(); }

@@ -104,6 +104,15 @@ TEST(Node, BecomesJsonWithEverythingThatYamlSpellsOtherwise) {
 /// The texts are short, because a damaged text is parsed again with each correction that may be meant, some thirty
 /// times. Of five short texts as many different problems are told as of one text that has all in it, in a third of the
 /// time.
+TEST(Parse, SaysOfAnEmptyFileThatItIsEmptyWhateverItsName) {
+  for (const char* file : {"a.yaml", "a.hpart", "a.step"}) {
+    Problems problems;
+    EXPECT_FALSE(parseText("", file, problems));
+    ASSERT_FALSE(problems.empty());
+    EXPECT_NE(problems.front().what.find("the file is empty"), std::string::npos) << problems.front().what;
+  }
+}
+
 TEST(Parse, NeverCrashesOnDamagedText) {
   const std::string good[] = {"hapticd: 1\nservo: {rate: 1000, velocity: {estimator: window}}\n",
                               "hapticd: 1\nmodels:\n  - name: &n \"a\\u0041b\"\n    plugin: x\n  - *n\n",

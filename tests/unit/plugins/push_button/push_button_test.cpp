@@ -21,12 +21,12 @@ struct Button {
     for (size_t i = 0; i + 1 < detent.size(); i += 2) knots.push_back({detent[i], detent[i + 1]});
     return dynamics::DetentCurve(knots, end);
   }
-  void make(PluginUnderTest& plugin) const {
+  void make(PluginUnderTest& plugin, uint32_t probes = 1) const {
     ASSERT_EQ(plugin.set("geometry", kModels + model), HSP_OK);
     ASSERT_EQ(plugin.set("stiffness", k1), HSP_OK);
     ASSERT_EQ(plugin.set("detent", detent), HSP_OK);
     ASSERT_EQ(plugin.set("end_stiffness", end), HSP_OK);
-    ASSERT_EQ(plugin.activate(), HSP_OK);
+    ASSERT_EQ(plugin.activate(probes), HSP_OK);
   }
 };
 
@@ -189,6 +189,33 @@ TEST(PushButton, EnergyOverAPressIsNeverGained) {
     ASSERT_GE(work, plugin.energy() - 1e-5) << i;
   }
   EXPECT_GT(work, 1e-3) << "two clicks in, two out: each takes its loop";
+}
+
+/// Two fingers press and let go, each in its own time: both on the cap, or one against it from behind.
+TEST(PushButton, BalancesAllFingersAndPaysNoneOfThemMoreThanTheyGave) {
+  for (const double k1 : {500.0, 2000.0, 6000.0})
+    for (const double side : {1.0, -1.0}) {
+      Button button;
+      button.k1 = k1;
+      PluginUnderTest plugin;
+      button.make(plugin, 2);
+      const auto finger = [](double phase) { return 1e-3 - 4e-3 * (1 - std::cos(phase)); };  // [m] above the cap
+      double work = 0, wrong = 0, last[2] = {}, force[2] = {};
+      for (int i = 0; i <= 60'000; ++i) {
+        const double y[2] = {kTop + finger(3e-4 * i), side * (kTop + finger(4.7e-4 * i))};
+        plugin.tick({{0.02, y[0], 0}, {-0.02, y[1], 0}});
+        double sum = 0;
+        for (size_t k = 0; k < 2; ++k) {
+          const double now = plugin.force(k).y();
+          if (i > 0) work -= (force[k] + now) / 2 * (y[k] - last[k]);
+          force[k] = now, last[k] = y[k], sum += now;
+        }
+        const double x2 = -plugin.position().y();
+        if (x2 > 0) wrong = std::fmax(wrong, std::fabs(sum - button.curve().force(x2)));
+        ASSERT_GE(work, plugin.energy() - 1e-5) << k1 << ", " << side << ", " << i;
+      }
+      EXPECT_LT(wrong, 1e-6) << k1 << ", " << side;
+    }
 }
 
 TEST(PushButton, SaysWhatIsWrongWithACurve) {

@@ -74,6 +74,7 @@ TEST(Catalog, TurnsABadFileIntoAMessageAboutThatFile) {
       {"crash", "crashed: Segmentation fault"}, {"exits", "ended the process with code 0"},
       {"wrong_major", "built for version 2.0"}, {"no_entry", "exports no hsp_plugin_entry"},
       {"broken_table", "has 'a' twice"},        {"wrong_default", "a: its default is outside of its range"},
+      {"no_id", "class 'no_id' has no id"},     {"odd_name", "a name that is not plain text"},
   };
   Catalog catalog(only({kBad}));
   for (const auto& [name, reason] : cases) {

@@ -109,6 +109,16 @@ TEST(ShapeInstance, RefusesClaimsThatAreNoBounds) {
   EXPECT_FALSE((*shape)->active());
 }
 
+TEST(ShapeInstance, RefusesAnExtensionWithoutItsFunctions) {
+  scene::Model described = model();
+  described.parameters = {text("label", 7, "hollow")};
+  auto shape = ShapeInstance::create(described, nullptr);
+  ASSERT_TRUE(shape) << shape.error();
+  const auto active = (*shape)->activate(hsp_activation{});
+  ASSERT_FALSE(active);
+  EXPECT_TRUE(contains(active.error(), "its extension hsp.surfaces/1 lacks a function")) << active.error();
+}
+
 TEST(ShapeInstance, RunsAPluginOfASmallerMinorVersion) {
   scene::Model described = model("small_minor");
   described.parameters = {real("depth", 0, 0.25)};

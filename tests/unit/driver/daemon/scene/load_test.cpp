@@ -103,6 +103,9 @@ TEST_F(Load, ReportsTheProblemsOfADeviceBesideAListOfDevices) {
     EXPECT_NE(both.find(one), std::string::npos) << one << "\n" << both;
   const std::string absent = told("device: absent.yaml\ndevices: [two.yaml]\n");
   EXPECT_NE(absent.find("there is no file"), std::string::npos) << absent;
+  std::filesystem::create_symlink("itself.yaml", dir_ / "itself.yaml");
+  const std::string itself = told("device: itself.yaml\ndevices: [two.yaml]\n");
+  EXPECT_EQ(itself.find("did you mean \"itself"), std::string::npos) << itself;
   const std::string same = told("device: two.yaml\ndevices: [two.yaml]\n");
   EXPECT_EQ(same.find("serail"), same.rfind("serail")) << same;
 }

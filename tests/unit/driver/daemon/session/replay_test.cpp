@@ -75,8 +75,8 @@ struct Recorded : Rig {
 
   void record() {
     const auto streams = flightStreams(scene, arms, rate, 1000 / rate, 0);
-    const RunFacts facts{rate,          settings.period_ns, settings.ticks,   true,         found_pressed,
-                         former_claims, full_when_slow,     former_passivity, counts_unfelt};
+    const RunFacts facts{rate,          settings.period_ns, settings.ticks,   true,          found_pressed,
+                         former_claims, full_when_slow,     former_passivity, counts_unfelt, false};
     about = aboutRun(scene, *world, arms, facts, streams);
     auto flight = std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8);
     if (counts_unfelt) flight->countUnfelt();

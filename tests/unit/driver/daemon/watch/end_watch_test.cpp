@@ -40,6 +40,16 @@ TEST(EndWatch, EndsWhatDoesNotComeBackAfterTheLastTick) {
   EXPECT_EQ(stuck, 2) << "asked again, as long as nobody is to blame";
 }
 
+TEST(EndWatch, EndsAWaitForATickThatDoesNotComeBack) {
+  FakeServo servo;
+  int hung = 0;
+  EndWatch watch(servo, [] {}, [&hung] { ++hung; });
+  for (Nanoseconds i = 0; i < EndWatch::kWaitsAfter / EndWatch::kLookEvery - 1; ++i) watch.check(1);
+  EXPECT_EQ(hung, 0);
+  for (int i = 0; i < 3; ++i) watch.check(1);
+  EXPECT_GT(hung, 0);
+}
+
 TEST(EndWatch, LeavesSlowTicksAloneHoweverManyThereAre) {
   FakeServo servo;
   int hung = 0;

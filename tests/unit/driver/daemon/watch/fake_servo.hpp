@@ -6,12 +6,13 @@ namespace hapticd::watch {
 
 /// A servo whose state a test sets.
 struct FakeServo : WatchTarget {
-  uint64_t tick = 0;
+  uint64_t tick = 0, beat = 0;
   Nanoseconds begun = 0, next = 0, cpu = 0, asked = 0;
   bool harmless = false;
   int cuts = 0;
   const Owner* runs = nullptr;  ///< whose code the servo is in
   uint64_t ticks() const noexcept override { return tick; }
+  uint64_t beats() const noexcept override { return beat; }
   Nanoseconds tickBegun() const noexcept override { return begun; }
   Nanoseconds nextTick() const noexcept override { return next; }
   Nanoseconds cpuTime() const noexcept override { return cpu; }

@@ -170,6 +170,36 @@ TEST(Watchdog, EndsAProcessWhoseDeviceNeverComesBackFromItsWait) {
   EXPECT_EQ(hung, 1);
 }
 
+/// Before the first tick no motor is on, and a wait of a simulated arm holds none: both are ended, but not cut.
+TEST(Watchdog, EndsAProcessWhoseModuleNeverComesBackWhileNoMotorIsHeld) {
+  for (const bool simulated : {false, true})
+    for (const bool waits : {false, true}) {
+      FakeServo servo;
+      servo.harmless = simulated;
+      servo.next = simulated && waits ? kMs : 0;
+      const Owner module{"arm", "arm", true};
+      servo.runs = &module;
+      const Nanoseconds most = simulated ? Watchdog::kHungSimulated : Watchdog::kHungAfter;
+      int hung = 0;
+      Watchdog watchdog(servo, [&hung] { ++hung; });
+      const auto look = [&](Nanoseconds time) {
+        for (Nanoseconds passed = 0; passed < time; passed += Watchdog::kCheckEvery) watchdog.check(kMs + passed);
+      };
+      look(most - kMs);
+      EXPECT_EQ(hung, 0);
+      ++servo.beat;
+      look(most - kMs);
+      EXPECT_EQ(hung, 0) << "it has come back meanwhile";
+      servo.runs = nullptr;
+      look(2 * most);
+      EXPECT_EQ(hung, 0) << "the daemon itself waits";
+      servo.runs = &module;
+      look(most + kMs);
+      EXPECT_EQ(hung, 1);
+      EXPECT_EQ(servo.cuts, 0);
+    }
+}
+
 TEST(Watchdog, ALateTickIsNoFaultOfASimulationOrOfAMachineThatStoodStill) {
   FakeServo simulation;
   simulation.harmless = true;

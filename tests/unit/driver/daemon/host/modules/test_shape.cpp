@@ -41,6 +41,11 @@ struct TestShape : hapticd::Shape {
     report.max_stiffness = label == "nonsense" ? -1 : stiffness;
     report.size_m = 2 * radius;
   }
+  /// With the label "hollow" it has every extension, and none of their functions.
+  const void* extension(const char*) {
+    static const std::array<uint64_t, 16> kHollow{sizeof kHollow};
+    return label == "hollow" ? kHollow.data() : nullptr;
+  }
   hsp_status touch(const hsp_probe& probe, const hsp_step&, hsp_contact& contact) noexcept HSP_RT {
     contact.force[0] = stiffness * probe.position[0];
     return HSP_OK;

@@ -285,6 +285,24 @@ TEST(Core, JumpAsksForASearchInTheNextTick) {
   EXPECT_TRUE(world->core().needsSearch());
 }
 
+/// Nobody knows which way the probe went meanwhile, and a sheet between both places was perhaps not crossed.
+TEST(Core, ALongGapIsAJumpOfARunAndNoneOfATool) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("wall"));
+  for (const bool run : {false, true})
+    for (const double gap : {0.09, 0.11}) {
+      WorldOptions options;
+      options.gaps_jump = run;
+      auto world = World::build(scene, options, [](int, const std::string&, const std::string&) {});
+      ASSERT_TRUE(world);
+      const Probe probe = probeAt({0, 0.01, 0});
+      for (int i = 0; i < 3; ++i) tickOnce(**world, i, probe);
+      ASSERT_FALSE((*world)->core().needsSearch());
+      (*world)->core().tick(2e-3 + gap, gap, {&probe, 1});
+      EXPECT_EQ((*world)->core().needsSearch(), run && gap > 0.1) << gap;
+    }
+}
+
 /// Looks on while models are searched, as a tick of the servo could at that moment.
 struct OnLooker {
   link::Link& link;
