@@ -139,7 +139,7 @@ MedialFile MatDeformable::readFile() const {
 void MatDeformable::describe(const MedialFile& file, double tick) const {
   const Description description = body_->describe(geometry_);
   writeLog(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
-  if (!(body_->greatestRadius() > 0))
+  if (!(drawn().greatestRadius() > 0) && tip_radius_ == 0)
     writeLog(HSP_LOG_WARNING, geometry_ + ": all radii are 0, so nothing will be felt; give radii above 0, in m");
   describeMaterial(file, tick);
   for (const std::string& odd : file.odd) writeLog(HSP_LOG_WARNING, "geometry: " + odd);

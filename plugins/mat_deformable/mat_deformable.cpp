@@ -61,7 +61,11 @@ medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double ra
 void MatDeformable::openBody(const MedialFile& file, double rate) {
   try {
     const medial::BodyOptions options = bodyOptions(file, rate);
-    body_ = file.grid ? makeSoftBody(*file.grid, options) : makeSoftBody(*file.mesh, options);
+    const auto make = [&options](const MedialFile& one) {
+      return one.grid ? makeSoftBody(*one.grid, options) : makeSoftBody(*one.mesh, options);
+    };
+    drawn_body_ = tip_radius_ > 0 ? make(file) : nullptr;
+    body_ = tip_radius_ > 0 ? make(grownBy(tip_radius_, file)) : make(file);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(geometry_ + ": medial: " + e.what());
   }
@@ -82,8 +86,8 @@ void MatDeformable::openContacts(uint32_t probes) {
 std::size_t MatDeformable::openVolume() {
   keeper_.reset();
   if (volume_ != 1) return 0;
-  auto hull = body_->hull();
-  const medial::VolumeKeeper volume(*hull, body_->greatestRadius());
+  auto hull = drawn().hull();
+  const medial::VolumeKeeper volume(*hull, drawn().greatestRadius());
   const std::size_t bytes = hull->bytes() + volume.bytes();
   keeper_.reset(new VolumeControl{std::move(hull), volume});
   return bytes;
@@ -97,7 +101,7 @@ uint32_t MatDeformable::openDisplay() {
   display_.reset();
   frames_.reset();
   if (display_tolerance_ <= 0) return 0;
-  frames_ = std::make_unique<Frames>(body_->contour(displayed()), body_->nodes().count());
+  frames_ = std::make_unique<Frames>(drawn().contour(displayed()), body_->nodes().count());
   return static_cast<uint32_t>(frames_->contour().vertexCount());
 }
 
@@ -137,6 +141,7 @@ void MatDeformable::deactivate() {
   keeper_.reset();
   displaced_.reset();
   body_.reset();
+  drawn_body_.reset();
 }
 
 void MatDeformable::reset() noexcept HSP_RT {
@@ -204,7 +209,7 @@ hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
   if (chord_error == 0 && frames_) chord_error = displayed();  // the mesh whose vertices the steps write
   if (!(chord_error > 0)) return HSP_E_ARG;
   if (!display_) display_ = std::make_unique<Display>();
-  display_->show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);
+  display_->show(drawn(), *displaced_, std::max(chord_error, kFinestMesh), out);
   return HSP_OK;
 }
 

@@ -120,7 +120,9 @@ class MatDeformable final : public Shape {
             "the contact (of a mesh: over 1 mm), and shear_offset is used for files of format hapticd-model/1"),
         F::real(
             "probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
-            "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness")};
+            "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness"),
+        F::real("tip_radius", &T::tip_radius_, "m", 0, 0.05, 0,
+                "radius of the ball that touches the body, about the tip of the arm; 0: a point")};
   }
 
  public:
@@ -157,6 +159,7 @@ class MatDeformable final : public Shape {
   /// [main] Reads the geometry file. If the file has problems, also logs warnings about its other values. @throws
   /// ModelFileError
   MedialFile readFile() const;
+  const SoftBody& drawn() const noexcept { return drawn_body_ ? *drawn_body_ : *body_; }
   void openContacts(uint32_t probes);
   uint32_t openDisplay();    ///< @return the number of moving vertices; 0 if none are drawn
   void openAccount();        ///< with the energy of a surface that swings at the start
@@ -215,13 +218,14 @@ class MatDeformable final : public Shape {
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
   double contact_ratio_ = 3, relaxation_share_ = 0, relaxation_time_ = 0.5;
   double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
-  double shear_distance_ = 0, probe_radius_ = 5e-3;
+  double shear_distance_ = 0, probe_radius_ = 5e-3, tip_radius_ = 0;
   int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};
 
   std::unique_ptr<SoftBody> body_;
-  std::vector<Track> tracks_;           ///< one per probe
-  std::vector<medial::Press> presses_;  ///< contacts of this step; has room for all probes
+  std::unique_ptr<SoftBody> drawn_body_;  ///< only if a ball touches the body: `body_` is larger by the ball's radius
+  std::vector<Track> tracks_;             ///< one per probe
+  std::vector<medial::Press> presses_;    ///< contacts of this step; has room for all probes
   /// On a felt surface: one entry for each probe that is near the surface in this step, with the index of the probe.
   struct FeltProbe {
     uint32_t probe = 0;

@@ -345,4 +345,11 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
   return file;
 }
 
+MedialFile grownBy(double radius, MedialFile file) {
+  if (file.grid) file.grid->grid.ball = radius;
+  if (file.mesh)
+    for (medial::Sphere& sphere : file.mesh->mesh.vertices) sphere.radius += radius;
+  return file;
+}
+
 }  // namespace hapticd

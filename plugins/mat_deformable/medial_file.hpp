@@ -41,4 +41,8 @@ MedialFile readMedialFile(const std::string& path, const Material& material);
 /// the format.
 MedialFile parseMedialFile(const std::string& text, const std::string& name, const Material& material);
 
+/// [main] Returns the body that a point feels as a ball of `radius` [m] feels the body of `file`: the balls of which it
+/// consists are larger by this radius.
+MedialFile grownBy(double radius, MedialFile file);
+
 }  // namespace hapticd

@@ -53,6 +53,11 @@ ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, c
   limitSlopes();
 }
 
+void ScalarField::raise(double constant) {
+  for (double& one : range_) one += constant;
+  for (Node& node : nodes_) node.f += constant;
+}
+
 void ScalarField::limitSlopes() {
   const std::array<std::size_t, 2> count{parameters_[0].size(), parameters_[1].size()};
   for (std::size_t axis = 0; axis < 2; ++axis) {

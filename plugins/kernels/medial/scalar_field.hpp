@@ -17,6 +17,10 @@ class ScalarField {
   /// sample.
   ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples);
 
+  /// [main] Adds a constant >= 0 to the whole field. Larger samples would not do this, because slopes are limited near
+  /// small samples.
+  void raise(double constant);
+
   /// Value with first and second derivatives. The second derivatives jump at the samples.
   struct Value {
     double f = 0, fu = 0, fv = 0, fuu = 0, fuv = 0, fvv = 0;

@@ -65,6 +65,7 @@ void Skeleton::build(const SkeletonGrid& grid, int degree, spline::Form form) {
       spline::SurfaceData{fit.degree, fit.knots, control_.points, {}, false, "skeleton"}, form);
   parameters_ = fit.parameters;
   radius_ = ScalarField(parameters_, grid.radius);
+  radius_.raise(grid.ball);
 }
 
 /// Stores a curve as the surface between two copies of the curve. Su is zero, so no search moves u.
@@ -83,6 +84,7 @@ void Skeleton::buildCurve(const SkeletonGrid& grid, int degree, spline::Form for
   std::vector<double> radius = grid.radius;
   radius.insert(radius.end(), grid.radius.begin(), grid.radius.end());
   radius_ = ScalarField(parameters_, radius);
+  radius_.raise(grid.ball);
 }
 
 /// Computes the bounds. A spline stays in the box of its control points, and no radius is greater than the greatest

@@ -17,6 +17,8 @@ struct SkeletonGrid {
   std::array<int, 2> count{0, 0};
   std::vector<Eigen::Vector3d> points;  ///< [m]
   std::vector<double> radius;           ///< [m] one per point, not negative
+  /// [m] added to the radii everywhere: a point then feels what a ball of this radius feels on the body itself
+  double ball = 0;
 };
 
 /// A foot on the skeleton: the sphere that is nearest to a given point, or the sphere in which the point lies deepest.
