@@ -27,9 +27,9 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
     throw std::invalid_argument(
         std::string("limits: end stops hold only a body that moves under forces, and this model is motion: ") +
         kMotionNames[motion_] + "; set motion: dynamic, or remove limits");
-  if (probe_radius_ > 0 && pop_through_ > 0)
+  if (tip_radius_ > 0 && pop_through_ > 0)
     throw std::invalid_argument(
-        "probe_radius: a shell does not give way to a ball, only to a point; remove probe_radius or pop_through");
+        "tip_radius: a shell does not give way to a ball, only to a point; remove tip_radius or pop_through");
   takeParts(instance_name_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth)

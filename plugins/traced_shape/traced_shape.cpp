@@ -45,7 +45,7 @@ std::string readGeometry(const std::string& file) {
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   part_.reset();
   searches_ = {};
-  balls_.assign(probe_radius_ > 0 ? std::max(activation.max_probes, 1u) : 0, contact::BallProxy{});
+  balls_.assign(tip_radius_ > 0 ? std::max(activation.max_probes, 1u) : 0, contact::BallProxy{});
   takeFormerNames();
   const std::string text = readGeometry(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);

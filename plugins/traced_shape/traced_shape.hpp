@@ -69,7 +69,7 @@ class TracedShape : public Shape {
     using F = Fields<T>;
     return std::array{F::real("hold", &TracedShape::hold_, "m", kNotGiven, kHoldAlways, kNotGiven,
                               "the former name of contact_hysteresis; -1 means that it is not given"),
-                      F::real("probe_radius", &TracedShape::probe_radius_, "m", 0, kLargestProbe, 0,
+                      F::real("tip_radius", &TracedShape::tip_radius_, "m", 0, kLargestTip, 0,
                               "radius of the ball that touches the model, about the tip of the arm; 0: a point")};
   }
 
@@ -105,13 +105,13 @@ class TracedShape : public Shape {
 
   std::string geometry_;
   int sides_ = kAuto, method_ = 1, iterations_ = 1, evaluation_ = 0;
-  double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven, probe_radius_ = 0;
+  double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven, tip_radius_ = 0;
 
  private:
   /// [m] with a contact hysteresis of at least this, the contact never changes to another face
   static constexpr double kHoldAlways = 1;
   static constexpr double kNotGiven = -1;
-  static constexpr double kLargestProbe = 0.05;  ///< [m] half of the way at which surfaces are traced by default
+  static constexpr double kLargestTip = 0.05;  ///< [m] half of the way at which surfaces are traced by default
   static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
@@ -174,7 +174,7 @@ class TracedShape : public Shape {
 template <class FootAt>
 contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT {
   const Eigen::Vector3d p(probe.position);
-  return balls_.empty() || !p.allFinite() ? foot_at(p) : balls_[index].step(foot_at, p, probe_radius_);
+  return balls_.empty() || !p.allFinite() ? foot_at(p) : balls_[index].step(foot_at, p, tip_radius_);
 }
 
 template <class T>

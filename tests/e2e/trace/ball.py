@@ -20,7 +20,7 @@ WALL = block([0.02, -0.05, -0.02], [0.06, 0.05, 0.05])
 
 def roll(surfaces, points, parameters=None, **keys):
     samples = [(i * 1e-3, *p) for i, p in enumerate(points)]
-    return trace(HAPTICD, surfaces, samples, {"probe_radius": RADIUS, **(parameters or {})}, **keys)[0]
+    return trace(HAPTICD, surfaces, samples, {"tip_radius": RADIUS, **(parameters or {})}, **keys)[0]
 
 
 def line(a, b, count=200):
@@ -66,7 +66,7 @@ def concave():
     rows = roll(left + right, points)
     check("a ball of 6 mm stays above a slot of 4 mm", abs(rows[-1]["fz"] - STIFFNESS * (height + 0.004)) < 1e-3, rows[-1]["fz"])
     points = line((3e-4, 0, 0.006), (3e-4, 0, -0.02))
-    check("a ball of 3 mm goes in", all(r["contact"] == 0 for r in roll(left + right, points, {"probe_radius": 0.0015})))
+    check("a ball of 3 mm goes in", all(r["contact"] == 0 for r in roll(left + right, points, {"tip_radius": 0.0015})))
 
 
 def shells():

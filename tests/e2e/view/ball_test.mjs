@@ -17,7 +17,7 @@ const scene = `hapticd: 1
 device: ${config('devices', 'simulated-premium15.yaml')}
 hand: {script: press, center: [0, 0, -0.04], normal: [0, 0, 1], radius: 0.006, approach: 0.01, rise: 0.003, rate: 0.5}
 models:
-  - {name: box, plugin: nurbs_rigid, parameters: {geometry: ${config('models', 'box.yaml')}, stiffness: 500, probe_radius: 0.008}}
+  - {name: box, plugin: nurbs_rigid, parameters: {geometry: ${config('models', 'box.yaml')}, stiffness: 500, tip_radius: 0.008}}
 `;
 
 test('the ball about the tip stays on the surface', () => browser.sandboxed(async (sandbox, open) => {

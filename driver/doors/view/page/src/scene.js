@@ -95,7 +95,7 @@ export class View {
   measure(models) {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
-    const ball = Math.max(0, ...models.map(({parameters}) => parameters?.find((p) => p.id === 'probe_radius')?.number ?? 0));
+    const ball = Math.max(0, ...models.map(({parameters}) => parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0));
     for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), ball);
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';
