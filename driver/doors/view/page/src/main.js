@@ -241,7 +241,7 @@ class Page {
     view.models.stain(contacts, kFullStain);
     now.arms.forEach((arm, i) => {
       if (!arm.now) return;
-      view.probes[i].update(arm.now, contacts.filter((c) => c.probe === i), this.hand.wish(i));
+      view.probes[i].update(arm.now, contacts.filter((c) => c.probe === i), this.hand.wish(i), view.models);
       if (view.shown.arm && arm.now.valid) view.probes[i].setLinks(this.armModels[i].links(arm.now.joints, arm.now.position));
     });
     if (this.fitWhenTip && now.arms[0]?.now?.valid) {

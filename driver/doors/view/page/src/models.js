@@ -46,6 +46,7 @@ export class Models {
   constructor() {
     this.group = new Group();
     this.byIndex = new Map();
+    this.ball = 0; // m: radius of the tip; the foot point of a ball is so far above the surface
   }
 
   /** Removes all models. */
@@ -63,7 +64,7 @@ export class Models {
   }
 
   /** Adds a model with its triangles {xyz, normals, corners, colours} and pose {position, orientation}. */
-  add(index, {name, plugin, pose}, triangles) {
+  add(index, {name, plugin, pose, deforms}, triangles) {
     this.remove(index);
     const live = new BufferGeometry(); // gets the new vertices of a body that deforms
     live.setAttribute('position', new BufferAttribute(triangles.xyz, 3));
@@ -76,8 +77,12 @@ export class Models {
     const mesh = new Mesh(triangles.normals ? live : toCreasedNormals(live, kCrease), material);
     mesh.name = name;
     if (pose) placeMesh(mesh, pose);
-    this.byIndex.set(index, {name, plugin, mesh, live, edges: null, triangles: triangles.corners.length / 3});
+    this.byIndex.set(index, {name, plugin, deforms, mesh, live, edges: null, triangles: triangles.corners.length / 3});
     this.group.add(mesh);
+  }
+
+  deforms(index) {
+    return this.byIndex.get(index)?.deforms === true;
   }
 
   /** Sets the new vertices of a body that deforms. */
@@ -108,7 +113,7 @@ export class Models {
       const mine = contacts.filter((c) => c.model === index && c.depth > 0);
       model.mesh.material.userData.stains.value.forEach((stain, i) => {
         const c = mine[i];
-        if (c) stain.set(...c.point, 0.3 + 0.65 * Math.min(1, c.depth / full));
+        if (c) stain.set(...c.point.map((x, k) => x - this.ball * c.normal[k]), 0.3 + 0.65 * Math.min(1, c.depth / full));
         else stain.w = 0;
       });
     }

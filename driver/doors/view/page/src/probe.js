@@ -74,13 +74,14 @@ export class Probe {
   }
 
   /** Draws the present state. @param now newest state of the arm @param contacts contacts of this probe @param wish
-   * wanted position of the led hand, or null */
-  update(now, contacts, wish) {
+   * wanted position of the led hand, or null @param models those of the scene */
+  update(now, contacts, wish, models) {
     this.tip.visible = now.valid;
     this.tipPlace.set(...now.position);
     const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
-    // The felt surface of a ball is that of its centre, so the foot point is the centre of the ball that stays outside.
-    if (now.valid) this.tip.position.set(...(this.ball && best?.depth > 0 ? best.point : now.position));
+    // The felt surface of a ball is that of its centre: the foot point is the centre of the ball that a rigid model keeps out.
+    const kept = this.ball && best?.depth > 0 && !models.deforms(best.model);
+    if (now.valid) this.tip.position.set(...(kept ? best.point : now.position));
     this.#force(new Vector3(...now.sent));
     this.#foot(best);
     this.ghost.visible = this.tether.visible = wish !== null;

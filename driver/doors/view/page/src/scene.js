@@ -96,6 +96,7 @@ export class View {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
     const ball = Math.max(0, ...models.map(({parameters}) => parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0));
+    this.models.ball = ball;
     for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), ball);
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';
