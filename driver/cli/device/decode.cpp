@@ -67,9 +67,10 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
 }
 
 int writeOut(const std::string& file, const std::string& text) {
-  std::FILE* out = file == "-" ? stdout : std::fopen(file.c_str(), "wb");
+  const bool standard = file == "-";
+  std::FILE* out = standard ? stdout : std::fopen(file.c_str(), "wb");
   const bool written = out != nullptr && std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  const bool closed = out != nullptr && (out == stdout ? std::fflush(out) : std::fclose(out)) == 0;
+  const bool closed = out != nullptr && (standard ? std::fflush(out) : std::fclose(out)) == 0;
   return written && closed ? kWorked : fail(kFailed, file + ": cannot be written");
 }
 
