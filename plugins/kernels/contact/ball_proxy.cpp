@@ -30,8 +30,8 @@ void BallProxy::adaptStride(bool clear, const Eigen::Vector3d& before, const Eig
 
 /// Turns the plane about its foot, so that it faces a ball about `center`.
 void BallProxy::faceFrom(const Eigen::Vector3d& center, double radius) noexcept {
-  const Eigen::Vector3d normal = (center - bound_.foot).normalized();
-  bound_ = {normal, normal.dot(bound_.foot) + radius, bound_.foot};
+  const Eigen::Vector3d normal = (center - bound_.foot.point).normalized();
+  bound_ = {normal, normal.dot(bound_.foot.point) + radius, bound_.foot};
 }
 
 /// Takes the foot of the centre, and sets the plane that it puts before the ball. A ball that is inside is pushed out
@@ -41,7 +41,7 @@ void BallProxy::faceFrom(const Eigen::Vector3d& center, double radius) noexcept 
 double BallProxy::look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept {
   constexpr double kNoDirection = 1e-9;  // [m] on the surface, rounding errors would give the direction
   const bool outside = !(foot.depth > 0);
-  bound_ = {foot.normal, foot.normal.dot(foot.point) + radius, foot.point};
+  bound_ = {foot.normal, foot.normal.dot(foot.point) + radius, foot};
   if (outside && foot.distance > kNoDirection) faceFrom(center_, radius);
   const double gap = (outside ? foot.distance : -foot.depth) - radius;
   gap_ = std::max(gap, 0.0);
@@ -72,6 +72,26 @@ Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p) noexcept {
   return isFar(target) ? reached_ : target;
 }
 
+/// Of the feet that hold the ball, the one whose face pushes most counts. It stays, unless another pushes clearly more:
+/// else the feature, u and v would flicker in a groove.
+/// @param out from the probe to the centre [m]
+void BallProxy::chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept {
+  constexpr double kClearly = 0.05;  // share of the whole push
+  const HalfSpace *most = nullptr, *same = nullptr;
+  for (const HalfSpace& plane : free_) {
+    const auto away = [this](const HalfSpace& other) { return (other.foot.point - last_foot_).squaredNorm(); };
+    if (most == nullptr || plane.normal.dot(out) > most->normal.dot(out)) most = &plane;
+    if (same == nullptr || away(plane) < away(*same)) same = &plane;
+  }
+  if (most != nullptr) {
+    const bool stays = most->normal.dot(out) < same->normal.dot(out) + kClearly * out.norm();
+    const FootStatus status = foot.status;
+    foot = (stays ? same : most)->foot;
+    foot.status = status;
+  }
+  last_foot_ = foot.point;
+}
+
 /// Makes the foot of the last centre that of the ball. If the feet did not suffice, the ball stays where it was seen to
 /// be free: in a place that no foot has tested, its spring might gain energy.
 Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept {
@@ -91,6 +111,7 @@ Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcep
   }
   const Eigen::Vector3d out = center_ - p;
   const double depth = out.norm();
+  chooseFoot(out, foot);
   foot.normal = depth > kSettled ? Eigen::Vector3d(out / depth) : bound_.normal;
   foot.depth = depth > 0 ? depth : -gap_;
   foot.distance = std::abs(foot.depth);

@@ -53,16 +53,18 @@ class BallProxy {
   double look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept;
   void faceFrom(const Eigen::Vector3d& center, double radius) noexcept;
   Eigen::Vector3d nearestFree(const Eigen::Vector3d& p) noexcept;
+  void chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept;
   Foot felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept;
 
-  Eigen::Vector3d center_{0, 0, 0};   ///< [m] of the proxy
-  Eigen::Vector3d reached_{0, 0, 0};  ///< [m] the centre nearest to the probe at which the ball was seen to be free
-  Eigen::Vector3d asked_{0, 0, 0};    ///< [m] the last centre whose foot was asked for
-  HalfSpace bound_;                   ///< what the foot of the centre leaves free
-  HalfSpaces free_;                   ///< what the feet that hold the ball leave free
-  double gap_ = 0;                    ///< [m] the centre may go so far in every direction
-  double stride_ = 1;                 ///< see adaptStride()
-  double lag_ = 0;                    ///< see lag()
+  Eigen::Vector3d center_{0, 0, 0};     ///< [m] of the proxy
+  Eigen::Vector3d reached_{0, 0, 0};    ///< [m] the centre nearest to the probe at which the ball was seen to be free
+  Eigen::Vector3d asked_{0, 0, 0};      ///< [m] the last centre whose foot was asked for
+  Eigen::Vector3d last_foot_{0, 0, 0};  ///< [m] on the surface: see chooseFoot()
+  HalfSpace bound_;                     ///< what the foot of the centre leaves free
+  HalfSpaces free_;                     ///< what the feet that hold the ball leave free
+  double gap_ = 0;                      ///< [m] the centre may go so far in every direction
+  double stride_ = 1;                   ///< see adaptStride()
+  double lag_ = 0;                      ///< see lag()
   bool known_ = false;
   bool fits_ = false;         ///< the ball was seen to be free since it began
   bool has_reached_ = false;  ///< no foot has shown that the ball does not fit at reached_
@@ -102,8 +104,9 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
     if (feet_left < 4 || !free_.dropOld(center_, radius, kSettled)) break;
     target = nearestFree(p);
   }
+  foot = felt(foot, p, radius);
   foot.evaluations = evaluations;
-  return felt(foot, p, radius);
+  return foot;
 }
 
 }  // namespace hapticd::contact

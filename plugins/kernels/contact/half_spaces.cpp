@@ -37,7 +37,7 @@ void HalfSpaces::age() noexcept {
 
 bool HalfSpaces::dropOld(const Eigen::Vector3d& center, double radius, double touching) noexcept {
   const auto gone = [&](const HalfSpace& plane) {
-    return plane.old && (center - plane.foot).norm() > radius + touching;
+    return plane.old && (center - plane.foot.point).norm() > radius + touching;
   };
   const auto end = planes_.begin() + count_, kept = std::remove_if(planes_.begin(), end, gone);
   count_ = static_cast<int>(kept - planes_.begin());
@@ -48,10 +48,10 @@ void HalfSpaces::turnTo(const Eigen::Vector3d& center, double radius) noexcept {
   if (count_ == 1) return clear();
   for (int i = 0; i < count_; ++i) {
     HalfSpace& plane = planes_[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d out = center - plane.foot;
+    const Eigen::Vector3d out = center - plane.foot.point;
     if (!(out.squaredNorm() > 0)) continue;
     plane.normal = out.normalized();
-    plane.offset = plane.normal.dot(plane.foot) + radius;
+    plane.offset = plane.normal.dot(plane.foot.point) + radius;
   }
 }
 

@@ -4,13 +4,15 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "kernels/contact/foot.hpp"
+
 namespace hapticd::contact {
 
 /// The points x with normal . x >= offset.
 struct HalfSpace {
   Eigen::Vector3d normal{0, 0, 1};  ///< unit vector into the half-space
   double offset = 0;                ///< [m] distance of its plane from the origin, along the normal
-  Eigen::Vector3d foot{0, 0, 0};    ///< [m] for a ball: the place on the surface that its centre must stay away from
+  Foot foot{};                      ///< for a ball: its centre must stay away from this foot
   bool old = false;                 ///< for a ball: the foot is of an earlier tick
 
   double height(const Eigen::Vector3d& x) const noexcept { return normal.dot(x) - offset; }  ///< [m] > 0 inside
@@ -33,6 +35,8 @@ class HalfSpaces {
   /// held by pushes alone: p plus positive multiples of the normals (Karush, Kuhn and Tucker; Nocedal and Wright,
   /// Numerical Optimization, 2nd ed., 16.1). In space three planes at most can hold it.
   Eigen::Vector3d nearestTo(const Eigen::Vector3d& p) noexcept;
+  const HalfSpace* begin() const noexcept { return planes_.data(); }         ///< [rt]
+  const HalfSpace* end() const noexcept { return planes_.data() + count_; }  ///< [rt]
 
  private:
   static constexpr int kMost = 4;
