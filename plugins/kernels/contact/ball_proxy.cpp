@@ -95,7 +95,7 @@ void BallProxy::chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept {
 /// Makes the foot of the last centre that of the ball. If the feet did not suffice, the ball stays where it was seen to
 /// be free: in a place that no foot has tested, its spring might gain energy.
 Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept {
-  lag_ = (asked_ - p).norm();
+  const double lag = lag_ = (asked_ - p).norm();
   if (found(foot) && has_reached_ && center_ != reached_) {
     center_ = reached_;
     gap_ = 0;
@@ -104,6 +104,7 @@ Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcep
   }
   if (!found(foot) || !fits_) {
     forget();
+    lag_ = lag;
     if (found(foot)) foot.status = FootStatus::kDegraded;
     foot.distance = (p - foot.point).norm();
     foot.depth = -foot.distance;

@@ -30,11 +30,7 @@ class BallProxy {
   Foot step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept;
 
   /// [rt] Forgets where the ball was, after a jump or a lost sample. It then begins at the probe.
-  void forget() noexcept {
-    known_ = fits_ = has_reached_ = false;
-    free_.clear();
-    lag_ = 0;
-  }
+  void forget() noexcept { *this = BallProxy(); }
   double lag() const noexcept { return lag_; }  ///< [rt] [m] from the probe to the centre whose foot was asked for last
 
   static constexpr int kMostFeet = 8;  ///< feet of one step; a flat face needs one, a groove three
