@@ -149,7 +149,9 @@ TEST(BallProxy, RestsAgainstEveryFaceOfAGrooveAndACorner) {
   for (const auto& faces :
        {std::vector{kFloor, kWall}, std::vector{kSlope, kFloor}, std::vector{kFloor, kWall, kSlope}}) {
     const World world = hollow(faces);
-    const Seen seen = compare(world, world.nearest_free({0, -1, 0}, kRadius) - Vector3d(1e-3, 1e-3, 0), 5e-3);
+    Vector3d into(0, 0, 0);  // all faces
+    for (const HalfSpace& face : faces) into -= face.normal;
+    const Seen seen = compare(world, world.nearest_free(into, kRadius) + 1e-3 * into, 5e-3);
     EXPECT_GT(seen.contacts, 10'000);
     EXPECT_LT(seen.worst, 1e-8);
     EXPECT_LT(seen.deepest, 1e-8);
