@@ -59,11 +59,11 @@ double BallProxy::look(const Foot& foot, const Eigen::Vector3d& p, double radius
 }
 
 /// Returns the nearest place to p that the planes leave free. It cannot be farther from p than a place that was seen to
-/// be free, unless planes of different parts of a curved surface contradict each other: then only the newest counts, or
-/// none.
-Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p) noexcept {
-  const double farthest = (reached_ - p).norm() + kSettled;
-  const auto isFar = [&](const Eigen::Vector3d& target) { return has_reached_ && (target - p).norm() > farthest; };
+/// be free (or than a radius more, if a foot has shown that it was not), unless planes of different parts of a curved
+/// surface or wrong feet contradict each other: then only the newest counts, or none.
+Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p, double radius) noexcept {
+  const double farthest = (reached_ - p).norm() + (has_reached_ ? kSettled : radius);
+  const auto isFar = [&](const Eigen::Vector3d& target) { return fits_ && (target - p).norm() > farthest; };
   Eigen::Vector3d target = free_.nearestTo(p);
   if (!isFar(target)) return target;
   free_.clear();

@@ -48,7 +48,7 @@ class BallProxy {
   void adaptStride(bool clear, const Eigen::Vector3d& before, const Eigen::Vector3d& now) noexcept;
   double look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept;
   void faceFrom(const Eigen::Vector3d& center, double radius) noexcept;
-  Eigen::Vector3d nearestFree(const Eigen::Vector3d& p) noexcept;
+  Eigen::Vector3d nearestFree(const Eigen::Vector3d& p, double radius) noexcept;
   void chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept;
   Foot felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept;
 
@@ -93,12 +93,12 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
     const bool clear = gap > kTouching + foot.residual * foot.residual / radius;  // an error along the surface
     if (clear) free_.turnTo(center_, radius);
     free_.add(bound_);
-    target = nearestFree(p);
+    target = nearestFree(p, radius);
     adaptStride(clear, way, target - center_);
     leans = gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled;
     if (!leans) continue;
     if (feet_left < 4 || !free_.dropOld(center_, radius, kSettled)) break;
-    target = nearestFree(p);
+    target = nearestFree(p, radius);
   }
   foot = felt(foot, p, radius);
   foot.evaluations = evaluations;

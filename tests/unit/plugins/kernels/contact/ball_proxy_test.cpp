@@ -265,6 +265,28 @@ TEST(BallProxy, RecoversFromAWrongFoot) {
   }
 }
 
+/// However wrong the feet are, the planes of a narrow groove do not throw the ball far away.
+TEST(BallProxy, StaysNearIfManyFeetAreWrong) {
+  const World groove = hollow({{Vector3d(1, 0.02, 0).normalized(), 0}, {Vector3d(-1, 0.021, 0.001).normalized(), 0}});
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> wrong(-1e-3, 1e-3);
+  BallProxy ball;
+  double farthest = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3d p(2e-3 * std::sin(0.01 * i), std::max(0.2 - 1e-4 * i, 0.13), 0);
+    const Foot foot = ball.step(
+        [&](const Vector3d& x) {
+          const Foot at = groove.foot_at(x);
+          return random() % 2 == 0
+                     ? at
+                     : footOf(x, at.point + Vector3d(wrong(random), wrong(random), wrong(random)), at.normal);
+        },
+        p, kRadius);
+    farthest = std::max(farthest, foot.depth);
+  }
+  EXPECT_LT(farthest, 0.1);
+}
+
 /// The spring of a ball on a bed of nails gets longer only by the motion of the hand, so a closed path gives the hand
 /// no energy. Where the hand rests, the ball rests.
 TEST(BallProxy, GivesNoEnergyAndRests) {
