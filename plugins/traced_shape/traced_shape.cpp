@@ -214,16 +214,17 @@ const TracedShape::CachedSearch& TracedShape::searchAbout(const Eigen::Vector3d&
 }
 
 /// Writes one record per surface, then the rivals: feet at other local minima of the distance on the same surfaces.
-/// Returns the number of all records, which may be larger than `cap`.
+/// Returns the number of all records, which may be larger than `cap`. The distances are those of the ball, else it
+/// would be deep in a surface before that is traced.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Eigen::Vector3d p(p_model);
-  const CachedSearch& search = searchAbout(p, radius);
-  const double way = (p - search.at).norm();
+  const CachedSearch& search = searchAbout(p, radius + probe_radius_);
+  const double nearer = (p - search.at).norm() + probe_radius_;
   uint64_t count = 0;
   for (const auto* records : {&search.found.nearest, &search.found.rivals})
     for (const trace::Near& near : *records) {
       if (count < cap)
-        out[count] = {static_cast<uint32_t>(near.surface), 0, {near.u, near.v}, std::max(0.0, near.distance - way)};
+        out[count] = {static_cast<uint32_t>(near.surface), 0, {near.u, near.v}, std::max(0.0, near.distance - nearer)};
       ++count;
     }
   return static_cast<int64_t>(count);
@@ -232,8 +233,9 @@ int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* ou
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
   const double lag = balls_.empty() ? 0 : balls_[near.probe].lag();
+  const double farther = near.distance_m > 0 ? probe_radius_ - lag : 0;  // from the centre whose foot was the last
   tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1],
-                                std::max(near.distance_m - lag, 0.0));
+                                std::max(near.distance_m + farther, 0.0));
   OfferedFeet& offers = offers_[near.probe];
   if (offers.count < offers.near.size()) offers.near[offers.count++] = near;
   return HSP_OK;
@@ -262,8 +264,8 @@ hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
 hsp_status TracedShape::bounds(double min[3], double max[3]) const {
   if (!model_ && !part_) return HSP_E_STATE;
   const Eigen::AlignedBox3d& box = part_ ? part_->bounds() : model_->bounds();
-  Eigen::Map<Eigen::Vector3d>(min, 3) = box.min();
-  Eigen::Map<Eigen::Vector3d>(max, 3) = box.max();
+  Eigen::Map<Eigen::Vector3d>(min, 3) = box.min().array() - probe_radius_;
+  Eigen::Map<Eigen::Vector3d>(max, 3) = box.max().array() + probe_radius_;
   return HSP_OK;
 }
 

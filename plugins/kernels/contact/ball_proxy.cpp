@@ -5,11 +5,10 @@
 
 namespace hapticd::contact {
 
-/// Moves the centre by `stride` times the way to the target: as far as the last foot has shown to be free, or by a
-/// radius, so that the ball does not pass over a ridge. The last foot of a tick goes all the way, however far it is.
-void BallProxy::moveTo(const Eigen::Vector3d& target, double stride, double radius, int feet_left) noexcept {
+/// Moves the centre by `stride` times the way to the target, by `longest` [m] at most.
+void BallProxy::moveTo(const Eigen::Vector3d& target, double stride, double longest) noexcept {
   const Eigen::Vector3d way = stride * (target - center_);
-  const double length = way.norm(), longest = std::max({gap_, radius, length / feet_left});
+  const double length = way.norm();
   if (stride == 1 && length <= longest) {
     center_ = target;
     return;
@@ -29,58 +28,95 @@ void BallProxy::adaptStride(bool clear, const Eigen::Vector3d& before, const Eig
   stride_ = clear ? std::clamp(stride_ / std::max(shrunk, 1 / kLongest), 1.0, kLongest) : 1;
 }
 
+/// Turns the plane about its foot, so that it faces a ball about `center`.
+void BallProxy::faceFrom(const Eigen::Vector3d& center, double radius) noexcept {
+  const Eigen::Vector3d normal = (center - bound_.foot.point).normalized();
+  bound_ = {normal, normal.dot(bound_.foot.point) + radius, bound_.foot};
+}
+
 /// Takes the foot of the centre, and sets the plane that it puts before the ball. A ball that is inside is pushed out
 /// along the normal; or if that plane would cut off the place where the ball was free, as on the far side of a convex
 /// edge, the ball returns there, and the plane is that of the foot seen from there.
 /// @return gap between ball and surface [m], < 0 if the ball was inside
-double BallProxy::look(const Foot& foot, double radius) noexcept {
+double BallProxy::look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept {
   constexpr double kNoDirection = 1e-9;  // [m] on the surface, rounding errors would give the direction
-  const auto setBound = [&](const Eigen::Vector3d& normal) { bound_ = {normal, normal.dot(foot.point) + radius}; };
   const bool outside = !(foot.depth > 0);
-  const bool clear = outside && foot.distance > kNoDirection;
-  setBound(clear ? Eigen::Vector3d((center_ - foot.point) / foot.distance) : foot.normal);
+  bound_ = {foot.normal, foot.normal.dot(foot.point) + radius, foot};
+  if (outside && foot.distance > kNoDirection) faceFrom(center_, radius);
   const double gap = (outside ? foot.distance : -foot.depth) - radius;
   gap_ = std::max(gap, 0.0);
-  if (gap > -kSettled) {
-    reached_ = center_;
-    has_reached_ = true;
-  } else if (has_reached_ && bound_.height(reached_) < -kSettled) {
+  if ((reached_ - foot.point).norm() < radius - kSettled) has_reached_ = false;  // an uncertain foot was wrong there
+  const bool fits = gap > -kSettled;
+  if (!fits && has_reached_ && bound_.height(reached_) < -kSettled) {
     center_ = reached_;
-    setBound((reached_ - foot.point).normalized());
+    faceFrom(reached_, radius);
   }
   if (gap < 0) center_ -= std::min(bound_.height(center_), 0.0) * bound_.normal;
+  if (!fits) return gap;
+  if (!has_reached_ || (center_ - p).norm() < (reached_ - p).norm() + kSettled) reached_ = center_;
+  fits_ = has_reached_ = true;
   return gap;
 }
 
 /// Returns the nearest place to p that the planes leave free. It cannot be farther from p than a place that was seen to
-/// be free, unless planes of different parts of a curved surface contradict each other: then only the newest counts, or
-/// none.
-Eigen::Vector3d BallProxy::nearestFree(HalfSpaces& free, const Eigen::Vector3d& p) const noexcept {
-  const double farthest = (reached_ - p).norm() + kSettled;
-  const auto isFar = [&](const Eigen::Vector3d& target) { return has_reached_ && (target - p).norm() > farthest; };
-  Eigen::Vector3d target = free.nearestTo(p);
+/// be free (or than a radius more, if a foot has shown that it was not), unless planes of different parts of a curved
+/// surface or wrong feet contradict each other: then only the newest counts, or none.
+Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p, double radius) noexcept {
+  const double farthest = (reached_ - p).norm() + (has_reached_ ? kSettled : radius);
+  const auto isFar = [&](const Eigen::Vector3d& target) { return fits_ && (target - p).norm() > farthest; };
+  Eigen::Vector3d target = free_.nearestTo(p);
   if (!isFar(target)) return target;
-  free.clear();
-  free.add(bound_);
-  target = free.nearestTo(p);
+  free_.clear();
+  free_.add(bound_);
+  target = free_.nearestTo(p);
   return isFar(target) ? reached_ : target;
 }
 
-/// Makes the foot of the last centre that of the ball.
-Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p) noexcept {
-  if (!found(foot) || !has_reached_) {
+/// Of the feet that hold the ball, the one whose face pushes most counts. It stays, unless another pushes clearly more:
+/// else the feature, u and v would flicker in a groove.
+/// @param out from the probe to the centre [m]
+void BallProxy::chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept {
+  constexpr double kClearly = 0.05;  // share of the whole push
+  const HalfSpace *most = nullptr, *same = nullptr;
+  for (const HalfSpace& plane : free_) {
+    const auto away = [this](const HalfSpace& other) { return (other.foot.point - last_foot_).squaredNorm(); };
+    if (most == nullptr || plane.normal.dot(out) > most->normal.dot(out)) most = &plane;
+    if (same == nullptr || away(plane) < away(*same)) same = &plane;
+  }
+  if (most != nullptr) {
+    const bool stays = most->normal.dot(out) < same->normal.dot(out) + kClearly * out.norm();
+    const FootStatus status = foot.status;
+    foot = (stays ? same : most)->foot;
+    foot.status = status;
+  }
+  last_foot_ = foot.point;
+}
+
+/// Makes the foot of the last centre that of the ball. If the feet did not suffice, the ball stays where it was seen to
+/// be free: in a place that no foot has tested, its spring might gain energy.
+Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept {
+  const double lag = lag_ = (asked_ - p).norm();
+  if (found(foot) && has_reached_ && center_ != reached_) {
+    center_ = reached_;
+    gap_ = 0;
+    faceFrom(center_, radius);
+    free_.turnTo(center_, radius);
+  }
+  if (!found(foot) || !fits_) {
     forget();
+    lag_ = lag;
     if (found(foot)) foot.status = FootStatus::kDegraded;
     foot.distance = (p - foot.point).norm();
     foot.depth = -foot.distance;
     return foot;
   }
   const Eigen::Vector3d out = center_ - p;
-  lag_ = out.norm();
-  foot.normal = lag_ > kSettled ? Eigen::Vector3d(out / lag_) : bound_.normal;
-  foot.depth = lag_ > 0 ? lag_ : -gap_;
+  const double depth = out.norm();
+  chooseFoot(out, foot);
+  foot.normal = depth > kSettled ? Eigen::Vector3d(out / depth) : bound_.normal;
+  foot.depth = depth > 0 ? depth : -gap_;
   foot.distance = std::abs(foot.depth);
-  foot.point = lag_ > 0 ? center_ : Eigen::Vector3d(p - gap_ * bound_.normal);
+  foot.point = depth > 0 ? center_ : Eigen::Vector3d(p - gap_ * bound_.normal);
   return foot;
 }
 

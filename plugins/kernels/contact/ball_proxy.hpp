@@ -8,6 +8,7 @@
 /// in a groove, each has a plane that the centre must not pass.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "kernels/contact/foot.hpp"
 #include "kernels/contact/half_spaces.hpp"
@@ -29,11 +30,8 @@ class BallProxy {
   Foot step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept;
 
   /// [rt] Forgets where the ball was, after a jump or a lost sample. It then begins at the probe.
-  void forget() noexcept {
-    known_ = has_reached_ = false;
-    lag_ = 0;
-  }
-  double lag() const noexcept { return lag_; }  ///< [rt] distance [m] from the probe to the proxy's centre
+  void forget() noexcept { *this = BallProxy(); }
+  double lag() const noexcept { return lag_; }  ///< [rt] [m] from the probe to the centre whose foot was asked for last
 
   static constexpr int kMostFeet = 8;  ///< feet of one step; a flat face needs one, a groove three
 
@@ -43,50 +41,68 @@ class BallProxy {
   /// [m] a face that is farther from the ball than this does not touch it; of two that touch it both count, though on a
   /// convex surface they are one after the other
   static constexpr double kTouching = 1e-12;
+  /// [m] a step that shows whether a face is still there that a foot of an earlier tick was on
+  static constexpr double kLean = 1e-6;
 
-  void moveTo(const Eigen::Vector3d& target, double stride, double radius, int feet_left) noexcept;
+  void moveTo(const Eigen::Vector3d& target, double stride, double longest) noexcept;
   void adaptStride(bool clear, const Eigen::Vector3d& before, const Eigen::Vector3d& now) noexcept;
-  double look(const Foot& foot, double radius) noexcept;
-  Eigen::Vector3d nearestFree(HalfSpaces& free, const Eigen::Vector3d& p) const noexcept;
-  Foot felt(Foot foot, const Eigen::Vector3d& p) noexcept;
+  double look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept;
+  void faceFrom(const Eigen::Vector3d& center, double radius) noexcept;
+  Eigen::Vector3d nearestFree(const Eigen::Vector3d& p, double radius) noexcept;
+  void chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept;
+  Foot felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcept;
 
-  Eigen::Vector3d center_{0, 0, 0};   ///< [m] of the proxy
-  Eigen::Vector3d reached_{0, 0, 0};  ///< [m] the last centre at which the ball was seen to be free
-  HalfSpace bound_;                   ///< what the foot of the centre leaves free
-  double gap_ = 0;                    ///< [m] the centre may go so far in every direction
-  double stride_ = 1;                 ///< see adaptStride()
-  double lag_ = 0;                    ///< see lag()
+  Eigen::Vector3d center_{0, 0, 0};     ///< [m] of the proxy
+  Eigen::Vector3d reached_{0, 0, 0};    ///< [m] the centre nearest to the probe at which the ball was seen to be free
+  Eigen::Vector3d asked_{0, 0, 0};      ///< [m] the last centre whose foot was asked for
+  Eigen::Vector3d last_foot_{0, 0, 0};  ///< [m] on the surface: see chooseFoot()
+  HalfSpace bound_;                     ///< what the foot of the centre leaves free
+  HalfSpaces free_;                     ///< what the feet that hold the ball leave free
+  double gap_ = 0;                      ///< [m] the centre may go so far in every direction
+  double stride_ = 1;                   ///< see adaptStride()
+  double lag_ = 0;                      ///< see lag()
   bool known_ = false;
-  bool has_reached_ = false;
+  bool fits_ = false;         ///< the ball was seen to be free since it began
+  bool has_reached_ = false;  ///< no foot has shown that the ball does not fit at reached_
 };
 
-/// What planes forbid is forgotten with each tick, and whenever the ball is clear of the surface: planes of a convex
-/// edge or of a wall that has ended would hold it in the air.
+/// The centre goes as far as the last foot has shown to be free, or by a radius, so that the ball does not pass over a
+/// ridge. The last foot of a tick goes all the way, however far it is.
+///
+/// Planes are kept from tick to tick, else a ball on two rims would slip aside from each in turn. But planes of a
+/// convex edge or of a wall that has ended would hold the ball in the air. So whenever it is clear of the surface, they
+/// are turned: then only their feet are in its way. And before it rests, it leans where only an old plane holds it.
 template <class FootAt>
 Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept {
-  HalfSpaces free;
-  if (known_) free.add(bound_);
   if (!known_) center_ = p;
   known_ = true;
   Foot foot;
   int evaluations = 0;
-  Eigen::Vector3d target = free.nearestTo(p);
+  free_.age();
+  bool leans = false;
+  Eigen::Vector3d target = free_.nearestTo(p);
   for (int feet_left = kMostFeet; feet_left > 0; --feet_left) {
     const Eigen::Vector3d way = target - center_;
-    moveTo(target, target == p || feet_left <= 2 ? 1 : stride_, radius, feet_left);
-    foot = foot_at(center_);
+    const double longest = leans ? kLean : std::max({gap_, radius, way.norm() / feet_left});
+    moveTo(target, leans || target == p || feet_left <= 2 ? 1 : stride_, longest);
+    asked_ = center_;
+    foot = foot_at(asked_);
     evaluations += foot.evaluations;
     if (!found(foot)) break;
-    const double gap = look(foot, radius);
+    const double gap = look(foot, p, radius);
     const bool clear = gap > kTouching + foot.residual * foot.residual / radius;  // an error along the surface
-    if (clear) free.clear();
-    free.add(bound_);
-    target = nearestFree(free, p);
+    if (clear) free_.turnTo(center_, radius);
+    free_.add(bound_);
+    target = nearestFree(p, radius);
     adaptStride(clear, way, target - center_);
-    if (gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled) break;
+    leans = gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled;
+    if (!leans) continue;
+    if (feet_left < 4 || !free_.dropOld(center_, radius, kSettled)) break;
+    target = nearestFree(p, radius);
   }
+  foot = felt(foot, p, radius);
   foot.evaluations = evaluations;
-  return felt(foot, p);
+  return foot;
 }
 
 }  // namespace hapticd::contact

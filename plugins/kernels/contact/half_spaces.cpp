@@ -26,11 +26,33 @@ bool solvePushes(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<doubl
 }  // namespace
 
 void HalfSpaces::add(const HalfSpace& half_space) noexcept {
-  if (count_ == kMost) {
-    std::copy(planes_.begin() + 1, planes_.end(), planes_.begin());
-    --count_;
+  count_ = std::min(count_ + 1, kMost);
+  std::copy_backward(planes_.begin(), planes_.begin() + count_ - 1, planes_.begin() + count_);
+  planes_[0] = half_space;
+}
+
+void HalfSpaces::age() noexcept {
+  for (HalfSpace& plane : planes_) plane.old = true;
+}
+
+bool HalfSpaces::dropOld(const Eigen::Vector3d& center, double radius, double touching) noexcept {
+  const auto gone = [&](const HalfSpace& plane) {
+    return plane.old && (center - plane.foot.point).norm() > radius + touching;
+  };
+  const auto end = planes_.begin() + count_, kept = std::remove_if(planes_.begin(), end, gone);
+  count_ = static_cast<int>(kept - planes_.begin());
+  return kept != end;
+}
+
+void HalfSpaces::turnTo(const Eigen::Vector3d& center, double radius) noexcept {
+  if (count_ == 1) return clear();
+  for (int i = 0; i < count_; ++i) {
+    HalfSpace& plane = planes_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d out = center - plane.foot.point;
+    if (!(out.squaredNorm() > 0)) continue;
+    plane.normal = out.normalized();
+    plane.offset = plane.normal.dot(plane.foot.point) + radius;
   }
-  planes_[static_cast<std::size_t>(count_++)] = half_space;
 }
 
 bool HalfSpaces::holds(const Eigen::Vector3d& x) const noexcept {
@@ -81,7 +103,7 @@ Eigen::Vector3d HalfSpaces::nearestTo(const Eigen::Vector3d& p) noexcept {
           keep(held);
           return x;
         }
-  keep({{count_ - 1}, 1});
+  keep({{0}, 1});
   return p - std::min(planes_[0].height(p), 0.0) * planes_[0].normal;
 }
 

@@ -69,6 +69,19 @@ def concave():
     check("a ball of 3 mm goes in", all(r["contact"] == 0 for r in roll(left + right, points, {"tip_radius": 0.0015})))
 
 
+def groove():
+    """A groove of 20 degrees, and a ball that is drawn along it, pressed 1 mm down."""
+    d, x = 0.03, 0.03 * math.tan(math.radians(10))
+    walls = [quad([-x, d, 0.05], [x, -d, 0], [0, 0, -0.1], "left"), quad([0, 0, 0.05], [x, d, 0], [0, 0, -0.1], "right")]
+    rest = RADIUS / math.sin(math.radians(10))
+    points = line((0, rest + 0.002, 0), (0, rest - 0.001, 0), 300)
+    points += [(2e-5 * math.sin(0.01 * i), rest - 0.001, 1e-5 * i) for i in range(1, 1000)]
+    rows = roll(walls, points, {"texture": {"amplitude": 1e-5, "wavelength": 0.002}})[310:]
+    check("of two walls that push alike, the same one counts in each tick", len({r["feature"] for r in rows}) == 1)
+    jump = max(math.dist((a["fx"], a["fy"], a["fz"]), (b["fx"], b["fy"], b["fz"])) for a, b in zip(rows, rows[1:]))
+    check("so bumps do not make the force flicker", jump < 1e-3, jump)
+
+
 def shells():
     sheet = [quad([-0.05, -0.05, 0], [0.1, 0, 0], [0, 0.1, 0], "sheet")]
     for side in (1, -1):
@@ -90,8 +103,17 @@ def states():
     check("the depth outside is minus the gap", abs(rows[0]["depth"] + 0.007) < 1e-12, rows[0]["depth"])
 
 
+def search():
+    points = line((0, 0, 0.06), (0, 0, 0.01), 1000)
+    rows = roll(BLOCK, points, {"probe_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
+    wanted = [[0, 0, STIFFNESS * max(0.05 - z, 0)] for _, _, z in points]
+    check("a ball that is larger than the activation radius touches when it should", worst(rows, wanted) < 1e-6, worst(rows, wanted))
+
+
 convex()
 concave()
+groove()
 shells()
 states()
+search()
 finish()
