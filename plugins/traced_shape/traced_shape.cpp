@@ -18,6 +18,8 @@ namespace hapticd {
 namespace {
 
 constexpr double kFarthestMesh = 1e-6;  // [m] least chord error of a mesh for drawing
+/// evaluations of a foot that a ball has at least, also under load: with wrong feet it goes into the model
+constexpr int kLeastForBall = 4;
 
 /// Reads a model file, and logs what is doubtful in one with problems.
 ModelFile readLogged(const std::string& text, const std::string& file, const Shape& shape) {
@@ -109,7 +111,8 @@ trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept 
   options.rule = contactRule();
   options.unite = sides_ == kFront;  // seen from the back, a union of solids is not a union
   if (step.max_iterations > 0)
-    options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
+    options.max_evaluations = static_cast<int>(
+        std::clamp<uint32_t>(step.max_iterations, balls_.empty() ? 1 : kLeastForBall, options.max_evaluations));
   return options;
 }
 
@@ -218,8 +221,8 @@ const TracedShape::CachedSearch& TracedShape::searchAbout(const Eigen::Vector3d&
 /// would be deep in a surface before that is traced.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Eigen::Vector3d p(p_model);
-  const CachedSearch& search = searchAbout(p, radius + probe_radius_);
-  const double nearer = (p - search.at).norm() + probe_radius_;
+  const CachedSearch& search = searchAbout(p, radius + tip_radius_);
+  const double nearer = (p - search.at).norm() + tip_radius_;
   uint64_t count = 0;
   for (const auto* records : {&search.found.nearest, &search.found.rivals})
     for (const trace::Near& near : *records) {
@@ -233,7 +236,7 @@ int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* ou
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
   const double lag = balls_.empty() ? 0 : balls_[near.probe].lag();
-  const double farther = near.distance_m > 0 ? probe_radius_ - lag : 0;  // from the centre whose foot was the last
+  const double farther = near.distance_m > 0 ? tip_radius_ - lag : 0;  // from the centre whose foot was the last
   tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1],
                                 std::max(near.distance_m + farther, 0.0));
   OfferedFeet& offers = offers_[near.probe];
@@ -264,8 +267,8 @@ hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
 hsp_status TracedShape::bounds(double min[3], double max[3]) const {
   if (!model_ && !part_) return HSP_E_STATE;
   const Eigen::AlignedBox3d& box = part_ ? part_->bounds() : model_->bounds();
-  Eigen::Map<Eigen::Vector3d>(min, 3) = box.min().array() - probe_radius_;
-  Eigen::Map<Eigen::Vector3d>(max, 3) = box.max().array() + probe_radius_;
+  Eigen::Map<Eigen::Vector3d>(min, 3) = box.min().array() - tip_radius_;
+  Eigen::Map<Eigen::Vector3d>(max, 3) = box.max().array() + tip_radius_;
   return HSP_OK;
 }
 

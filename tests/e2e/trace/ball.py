@@ -105,7 +105,7 @@ def states():
 
 def search():
     points = line((0, 0, 0.06), (0, 0, 0.01), 1000)
-    rows = roll(BLOCK, points, {"probe_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
+    rows = roll(BLOCK, points, {"tip_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
     wanted = [[0, 0, STIFFNESS * max(0.05 - z, 0)] for _, _, z in points]
     check("a ball that is larger than the activation radius touches when it should", worst(rows, wanted) < 1e-6, worst(rows, wanted))
 
