@@ -13,26 +13,38 @@ before(async () => { browser = await Browser.open({width: 900, height: 620}); })
 after(() => browser.close());
 
 const config = (...path) => join(root, 'config', ...path);
-const scene = `hapticd: 1
+const box = (name, x, tip) => `  - {name: ${name}, plugin: nurbs_rigid, pose: {position: [${x}, 0, 0]}, parameters: {geometry: ${config('models', 'box.yaml')}, stiffness: 500${tip}}}\n`;
+const scene = (radius) => `hapticd: 1
 device: ${config('devices', 'simulated-premium15.yaml')}
-hand: {script: press, center: [0, 0, -0.04], normal: [0, 0, 1], radius: 0.006, approach: 0.01, rise: 0.003, rate: 0.5}
+hand: {script: press, center: [0, 0, -0.04], normal: [0, 0, 1], radius: ${radius}, approach: 0.01, rise: 0.003, rate: 0.5}
 models:
-  - {name: box, plugin: nurbs_rigid, parameters: {geometry: ${config('models', 'box.yaml')}, stiffness: 500, probe_radius: 0.008}}
 `;
 
-test('the ball about the tip stays on the surface', () => browser.sandboxed(async (sandbox, open) => {
-  const file = join(sandbox.folder, 'ball.yaml'), h5 = join(sandbox.folder, 'ball.h5');
-  writeFileSync(file, scene);
+/** Presses models from `radius` in front of the box at the origin, and gives how the tip is drawn while it is pressed. */
+async function drawn(sandbox, open, name, radius, models) {
+  const file = join(sandbox.folder, `${name}.yaml`), h5 = join(sandbox.folder, `${name}.h5`);
+  writeFileSync(file, scene(radius) + models);
   execFileSync(hapticd, ['run', file, '--virtual-time', '--for', '4', '--record', h5], {stdio: 'ignore'});
   const page = await open((await sandbox.start(['view', '--file', h5]).says(/http:\S+/))[0]);
   await shown(page);
-  const pressed = await (await page.waitForFunction(() => {
+  const found = await (await page.waitForFunction(() => {
     const {now, view} = window.hapticdView, [probe] = view.probes;
     const depth = Math.max(...now.current().map((contact) => contact.depth));
     return depth > 1e-3 && probe.tip.visible && {depth, ball: probe.tip.scale.x, above: probe.tip.position.z - 0.05, tip: probe.tipPlace.z - 0.05};
   })).jsonValue();
-  await page.screenshot({path: join(pictures, 'ball.png')});
+  await page.screenshot({path: join(pictures, `${name}.png`)});
+  return found;
+}
+
+test('the ball about the tip stays on the surface', () => browser.sandboxed(async (sandbox, open) => {
+  const pressed = await drawn(sandbox, open, 'ball', 0.006, box('box', 0, ', probe_radius: 0.008'));
   assert.equal(pressed.ball, 0.008);
   assert.ok(Math.abs(pressed.above - 0.008) < 1e-4, `the ball is ${pressed.above} m above the box`);
   assert.ok(pressed.tip < 0.0075, `the tip is ${pressed.tip} m above the box`);
 }, 'ball-failed'));
+
+test('a model that is touched by a point beside one that is touched by a ball shows the tip itself', () => browser.sandboxed(async (sandbox, open) => {
+  const pressed = await drawn(sandbox, open, 'point', 0, box('far', 0.3, ', probe_radius: 0.008') + box('box', 0, ''));
+  assert.ok(pressed.ball < 0.008, `the tip has ${pressed.ball} m`);
+  assert.equal(pressed.above, pressed.tip);
+}, 'point-failed'));

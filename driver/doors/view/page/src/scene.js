@@ -95,8 +95,8 @@ export class View {
   measure(models) {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
-    const ball = Math.max(0, ...models.map(({parameters}) => parameters?.find((p) => p.id === 'probe_radius')?.number ?? 0));
-    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), ball);
+    const balls = models.map(({parameters}) => parameters?.find((p) => p.id === 'probe_radius')?.number ?? 0);
+    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), balls);
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';
     this.show('wire', this.shown.wire);
