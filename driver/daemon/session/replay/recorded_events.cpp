@@ -74,7 +74,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
     EventLog::Message message = log.messageOf(event);
     log.note(event);
     if (!message.text.empty())
-      messages.push_back({event.t, message.level, std::move(message.who), std::move(message.text)});
+      messages.push_back({event.t, event.kind, message.level, std::move(message.who), std::move(message.text)});
   }
   return messages;
 }
