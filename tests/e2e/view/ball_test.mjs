@@ -6,7 +6,7 @@ import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, pictures, shown} from './browser.mjs';
-import {hapticd, root} from './program.mjs';
+import {hapticd, root, until} from './program.mjs';
 
 let browser;
 before(async () => { browser = await Browser.open({width: 900, height: 620}); });
@@ -27,6 +27,8 @@ async function drawn(sandbox, open, name, radius, models) {
   execFileSync(hapticd, ['run', file, '--virtual-time', '--for', '4', '--record', h5], {stdio: 'ignore'});
   const page = await open((await sandbox.start(['view', '--file', h5]).says(/http:\S+/))[0]);
   await shown(page);
+  await page.waitForFunction(() => window.hapticdView.fitted); // the radius is known
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
   const found = await (await page.waitForFunction(() => {
     const {now, view} = window.hapticdView, [probe] = view.probes;
     const depth = Math.max(...now.current().map((contact) => contact.depth));
@@ -48,3 +50,24 @@ test('a model that is touched by a point beside one that is touched by a ball sh
   assert.ok(pressed.ball < 0.008, `the tip has ${pressed.ball} m`);
   assert.equal(pressed.above, pressed.tip);
 }, 'point-failed'));
+
+test('the mouse presses with a ball no deeper than with a point', () => browser.sandboxed(async (sandbox, open) => {
+  const file = join(sandbox.folder, 'mouse.yaml');
+  writeFileSync(file, scene(0.03) + box('box', 0, ', probe_radius: 0.01'));
+  const page = await open((await sandbox.show(file)).url);
+  await shown(page);
+  await page.waitForFunction(() => window.hapticdView.fitted && !window.hapticdView.fitWhenTip);
+  await page.keyboard.press('1'); // from the front: the pointer looks along -z
+  const [tip, middle] = await page.evaluate(() => {
+    const {view} = window.hapticdView, {left, top} = view.canvas.getBoundingClientRect(), front = view.models.box().max.z;
+    const places = [view.probes[0].tipPlace, view.probes[0].tipPlace.clone().set(0, 0, front)];
+    return places.map((place) => view.project(place)).map(({x, y}) => ({x: x + left, y: y + top}));
+  });
+  await page.mouse.move(tip.x, tip.y);
+  await page.mouse.down();
+  await page.mouse.move(middle.x + 30, middle.y + 30, {steps: 5});
+  await page.mouse.move(middle.x, middle.y);
+  const wish = await until(() => page.evaluate(() => window.hapticdView.hand.wish(0)?.z), 60, 'a wish of the hand');
+  const deep = 0.05 + 0.01 - wish; // behind the surface that the centre of the ball feels
+  assert.ok(deep > 0.002 && deep < 0.006, `the mouse wants the tip ${deep} m deep`);
+}, 'mouse-failed'));
