@@ -47,11 +47,6 @@ inline double numberIn(const std::vector<Value>& values, std::string_view id, do
   return value != nullptr ? value->number : otherwise;
 }
 
-/// [any] Returns the radius [m] of the ball that touches a model with these parameters (probe_radius), 0 for a point.
-inline double ballIn(const std::vector<Value>& values) {
-  return numberIn(values, "probe_radius");
-}
-
 /// One point of a kinematic path; poses between two points are interpolated (linear, and slerp).
 struct PathPoint {
   double t = 0;

@@ -8,18 +8,15 @@ namespace hapticd::sim {
 using link::ActivationRecord;
 
 Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses,
-                     uint32_t probe_count, const ProximitySettings& settings, link::Link& link,
-                     const std::vector<double>& balls)
+                     uint32_t probe_count, const ProximitySettings& settings, link::Link& link)
     : settings_(settings), link_(link), of_scene_(models.size(), UINT32_MAX) {
-  for (uint32_t i = 0; i < models.size(); ++i)
-    addModel(i, *models[i], poses[i], probe_count, i < balls.size() ? balls[i] : 0);
+  for (uint32_t i = 0; i < models.size(); ++i) addModel(i, *models[i], poses[i], probe_count);
 }
 
-void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count,
-                         double ball) {
+void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
   if (shape.surfaces() == nullptr) return;
   const uint32_t surfaces = shape.surfaceCount();
-  Model model{place, &shape, surfaces, shape.report().locked_bytes, {}, {}, false, {}, {}, ball, {}, 0};
+  Model model{place, &shape, surfaces, shape.report().locked_bytes, {}, {}, false, {}, {}, {}, 0};
   model.has_box = shape.bounds(model.box_min.data(), model.box_max.data());
   model.position = Eigen::Vector3d(pose.position);
   const double* q = pose.orientation;
@@ -37,10 +34,9 @@ void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_p
     *gone = std::move(model);
 }
 
-void Proximity::add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count,
-                    double ball) {
+void Proximity::add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
   const std::lock_guard lock(mutex_);
-  addModel(place, shape, pose, probe_count, ball);
+  addModel(place, shape, pose, probe_count);
 }
 
 void Proximity::remove(uint32_t place) {
@@ -104,8 +100,8 @@ void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d&
   // A foot point is as far away as the contact is deep. In one period of the search a probe at 2 m/s moves 10 mm.
   constexpr double kOnTheWay = 0.01;  // [m]
   const double held = depth > 0 ? depth + kOnTheWay : 0;
-  const double near_by = model.ball + std::max(settings_.activation_radius, held);
-  const double reach = model.ball + std::max(settings_.activation_radius + settings_.hysteresis, held);
+  const double near_by = std::max(settings_.activation_radius, held);
+  const double reach = std::max(settings_.activation_radius + settings_.hysteresis, held);
   const Eigen::Vector3d p_model = model.orientation.conjugate() * (p_world - model.position);
   const Eigen::Vector3d to_box = p_model - p_model.cwiseMax(model.box_min).cwiseMin(model.box_max);
   const bool may_be_near = !model.has_box || to_box.norm() <= reach;

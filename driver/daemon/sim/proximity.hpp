@@ -31,13 +31,12 @@ enum class Searching {
 class Proximity {
  public:
   /// [main] @param models in the order of the scene. Shapes without surfaces() find their foot points by themselves, so
-  /// they are left out of the search. @param balls [m] radius of the ball that touches each model: its surfaces are
-  /// felt from that much farther away; empty: points touch all
+  /// they are left out of the search.
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
-            const ProximitySettings& settings, link::Link& link, const std::vector<double>& balls = {});
+            const ProximitySettings& settings, link::Link& link);
 
   /// [main] Adds a model to an empty place while searches run.
-  void add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count, double ball = 0);
+  void add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
 
   /// [main] Removes the model of a place. After the return, no records are sent for it.
   void remove(uint32_t place);
@@ -66,12 +65,11 @@ class Proximity {
     bool has_box;
     Eigen::Vector3d position;
     Eigen::Quaterniond orientation;
-    double ball;                  ///< [m] radius of the ball that touches it, 0 for a point
     std::vector<uint8_t> active;  ///< [probe * surface_count + surface]
     uint32_t active_count = 0;
   };
 
-  void addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count, double ball);
+  void addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
   void receiveTransforms();
   void searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world, double depth);
   void stopLeft(Model& model, uint32_t probe);

@@ -59,7 +59,6 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   activation = activationFor(scene, options, budget_ns);
   std::vector<host::ShapeInstance*> models;
   std::vector<hsp_pose> poses;
-  std::vector<double> balls;
   const SetupScope setting_up;
   for (const scene::Model& described : scene.models) {
     activation.pose = startPose(described);
@@ -70,13 +69,12 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
     world->locked_bytes_ += report.locked_bytes;
     models.push_back(shape->get());
     poses.push_back(activation.pose);
-    balls.push_back(ballIn(described.parameters));
     world->shapes_.push_back(std::move(*shape));
   }
   world->link_ = std::make_unique<link::Link>();
   world->proximity_ = std::make_unique<sim::Proximity>(
       models, poses, options.probe_count, sim::ProximitySettings{scene.servo.activation_radius, scene.servo.hysteresis},
-      *world->link_, balls);
+      *world->link_);
   CoreSettings settings;
   settings.budget_ns = budget_ns;
   settings.max_probe_speed = kMaxProbeSpeed;
@@ -109,14 +107,12 @@ Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& 
 
 void World::store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
   shapes_[place] = std::move(shape);
-  if (model.enabled)
-    proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes, ballIn(model.parameters));
+  if (model.enabled) proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
 }
 
 bool World::wake(uint32_t place, const scene::Model& model) {
   if (shapes_[place]->surfaces() == nullptr || proximity_->contains(place)) return false;
-  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes,
-                  ballIn(model.parameters));  // a moving model sends its pose
+  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);  // a moving model sends its pose
   return true;
 }
 

@@ -80,14 +80,6 @@ def shells():
     check("its free rim is round", worst(roll(sheet, around, {"sides": "both"}), wanted) < 1e-4)
 
 
-def wide():
-    """A ball that is wider than the distance from which on surfaces are traced."""
-    points = line((0, 0, 0.06), (0, 0, 0.03), 1000)
-    wanted = [[0, 0, STIFFNESS * max(0.04 - z, 0)] for _, _, z in points]
-    rows = roll(BLOCK, points, {"probe_radius": 0.04}, servo={"activation_radius": 0.02, "hysteresis": 0.01})
-    check("a wide ball touches as far away as it is wide", worst(rows, wanted) < 1e-6, worst(rows, wanted))
-
-
 def states():
     points = line((0, 0, 0.006), (0, 0, 0.001))
     rows = roll(BLOCK, points + [(math.nan, 0, 0)] + [(0, 0, 0.001)] * 60)
@@ -101,6 +93,5 @@ def states():
 convex()
 concave()
 shells()
-wide()
 states()
 finish()

@@ -25,9 +25,9 @@ def block(low, high):
             quad([x, top, front], [dx, 0, 0], [0, 0, -dz], "top"), quad([x, y, z], [dx, 0, 0], [0, 0, dz], "bottom")]
 
 
-def trace(hapticd, surfaces, samples, parameters=None, path=None, servo=None, **keys):
+def trace(hapticd, surfaces, samples, parameters=None, path=None, **keys):
     """Moves a probe over samples (t, x, y, z). Returns a row of numbers for each, and the warnings. @param path rows of poses along which
-    the model moves @param servo keys of the servo @param keys more keys of the model"""
+    the model moves @param keys more keys of the model"""
     with tempfile.TemporaryDirectory() as folder:
         table = lambda name, header, rows: write(folder, name, header + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
         write(folder, "model.json", json.dumps({"format": "hapticd-model/1", "surfaces": surfaces}))
@@ -35,7 +35,7 @@ def trace(hapticd, surfaces, samples, parameters=None, path=None, servo=None, **
             keys.update(motion="kinematic", path=table("path.csv", "t,x,y,z,qw,qx,qy,qz", path))
         model = {"name": "thing", "plugin": "nurbs_rigid",
                  "parameters": {"geometry": "model.json", "stiffness": STIFFNESS, "damping": 0, **(parameters or {})}, **keys}
-        scene, out = write(folder, "scene.yaml", json.dumps({"hapticd": 1, "servo": servo or {}, "models": [model]})), os.path.join(folder, "out.csv")
+        scene, out = write(folder, "scene.yaml", json.dumps({"hapticd": 1, "models": [model]})), os.path.join(folder, "out.csv")
         code, _, err = program(hapticd)("trace", scene, "--probe", table("probe.csv", "t,x,y,z", samples), "--out", out)
         assert code == 0, err
         with open(out) as file:

@@ -34,6 +34,11 @@ Eigen::Vector3d centerInModel(const scene::Device& device, const HandScript& han
 
 }  // namespace
 
+double ballOf(const scene::Model& model) {
+  const scene::Value* radius = givenIn(model.parameters, "probe_radius");
+  return radius != nullptr ? radius->number : 0;
+}
+
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape) {
   Eigen::AlignedBox3d box;
@@ -52,7 +57,7 @@ bool passesAround(const scene::Device& device, const HandScript& hand, const sce
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings) {
   const scene::Model& model = scene.models[inside.model];
   const scene::Device& device = scene.devices[inside.device];
-  const double ball = ballIn(model.parameters);
+  const double ball = ballOf(model);
   const std::string where =
       fmt::format("the hand starts inside {}: the tip is at [{:.4g}, {:.4g}, {:.4g}] m in the world, {}{:.3g} mm deep",
                   model.name, inside.tip.x(), inside.tip.y(), inside.tip.z(),

@@ -22,6 +22,9 @@ struct InsideTip {
   std::optional<double> radius{};  ///< [m] a hand.radius with which the hand starts outside and touches a model
 };
 
+/// Returns the radius [m] of the ball that touches the model (probe_radius), 0 for a point.
+double ballOf(const scene::Model& model);
+
 /// Returns true if the centre of the hand's script lies in the box of the model: the hand then moves round the model.
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape);
