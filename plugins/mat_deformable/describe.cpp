@@ -129,7 +129,7 @@ double usual(std::string_view id) {
 
 MedialFile MatDeformable::readFile() const {
   try {
-    return readMedialFile(geometry_, {stiffness_, damping_, mass_, indenter_radius_});
+    return readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
   } catch (const ModelFileError& error) {
     for (const std::string& odd : error.odd) writeLog(HSP_LOG_WARNING, "geometry: " + odd);
     throw;

@@ -118,8 +118,9 @@ class MatDeformable final : public Shape {
             "distance along the surface, to either side, over which the change of the stiffness is taken. It pushes "
             "toward the softer side, and does not change the part of the force along the normal. 0: the change at "
             "the contact (of a mesh: over 1 mm), and shear_offset is used for files of format hapticd-model/1"),
-        F::real("indenter_radius", &T::indenter_radius_, "m", 1e-4, 0.1, 5e-3,
-                "radius of the flat indenter for which young, poisson and thickness are converted into a stiffness")};
+        F::real(
+            "probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
+            "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness")};
   }
 
  public:
@@ -214,7 +215,7 @@ class MatDeformable final : public Shape {
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
   double contact_ratio_ = 3, relaxation_share_ = 0, relaxation_time_ = 0.5;
   double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
-  double shear_distance_ = 0, indenter_radius_ = 5e-3;
+  double shear_distance_ = 0, probe_radius_ = 5e-3;
   int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};
 

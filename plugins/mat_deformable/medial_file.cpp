@@ -288,7 +288,7 @@ class Reader {
       problems_.add(at, "expected 0 to 0.5");
     } else if (key == "thickness" && !(number >= tip_ / kThinnest && number <= kFarthestPoint)) {
       char text[128];
-      std::snprintf(text, sizeof text, "expected at least %g m, a tenth of indenter_radius", tip_ / kThinnest);
+      std::snprintf(text, sizeof text, "expected at least %g m, a tenth of probe_radius", tip_ / kThinnest);
       problems_.add(at, text);
     } else if (key == "stiffness" && number > kMost) {
       problems_.add(at, "expected at most 1e6 N/m");

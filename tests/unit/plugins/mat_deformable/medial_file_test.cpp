@@ -113,9 +113,8 @@ TEST(MedialFile, ElasticConstantsStandForTheStiffnessOfALayer) {
   EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.6\n  thickness: 0.02\n")
                 .find(":6:12: medial.poisson: 0.6, expected 0 to 0.5"),
             std::string::npos);
-  EXPECT_NE(
-      complaintOfText(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 1e-5\n").find("a tenth of indenter_radius"),
-      std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 1e-5\n").find("a tenth of probe_radius"),
+            std::string::npos);
   EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 0.02\n  stiffness: 3\n").find("either"),
             std::string::npos);
   EXPECT_NE(complaintOfText(good + "  stiffness: 3\n  poisson: 0.4\n").find("only together with young"),
