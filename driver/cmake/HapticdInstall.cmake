@@ -56,3 +56,4 @@ install(CODE "file(INSTALL DESTINATION \"\${limits_dir}\" TYPE FILE RENAME 70-ha
                    FILES \"${PROJECT_SOURCE_DIR}/config/systemd/70-hapticd.limits\")")
 file(GLOB udev_rules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/udev/*.rules)
 install(FILES ${udev_rules} DESTINATION lib/udev/rules.d)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/udev/generate-rules DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticd)

@@ -42,12 +42,13 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
 namespace {
 
 /// Returns the part of a message about a thin wall that says what it is.
-std::string thinWallText(const ThinWall& wall, double force, double depth) {
-  char text[256];
+std::string thinWallText(const ThinWall& wall, double force, double depth, double ball) {
+  char text[256], radius[64] = "";
+  if (ball > 0) std::snprintf(radius, sizeof radius, ", more than that and the %.3g mm of tip_radius", 1e3 * ball);
   std::snprintf(text, sizeof text,
-                ": a wall is %.3g mm thick, but a press of %.3g N goes %.3g mm deep at this stiffness, so the tip "
+                ": a wall is %.3g mm thick, but a press of %.3g N goes %.3g mm deep at this stiffness%s, so the tip "
                 "comes out behind",
-                1e3 * wall.thickness, force, 1e3 * depth);
+                1e3 * wall.thickness, force, 1e3 * depth, radius);
   return text;
 }
 
@@ -61,8 +62,9 @@ double roundedUp(double number) {
 }  // namespace
 
 /// Warns of walls that a firm press goes through. The hand still feels the wall, because the contact is held. But the
-/// tip is drawn on the other side, where it may be in front of another face. Walls so thin that no arm renders a
-/// sufficient stiffness are only noted for `hapticd explain`: most parts have such a place, and nobody can mend it.
+/// tip is drawn on the other side, where it may be in front of another face. A ball is pressed by its radius before its
+/// centre, the tip, is at the wall. Walls so thin that no arm renders a sufficient stiffness are only noted for
+/// `hapticd explain`: most parts have such a place, and nobody can mend it.
 void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
   // [N] firm press of an exploring finger tip [assumption]; the arm's limit is for short moments
   constexpr double kFirmPress = 2;
@@ -70,11 +72,13 @@ void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
   const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
   if (!(stiffness_ > 0)) return;
   const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
-  const double least = contact::wallDepthAt({kStiffest, damping_, exponent_, depth_scale_}, force);
+  const double tip = depth - tip_radius_;  // how deep the tip itself is in the part
+  const double least = contact::wallDepthAt({kStiffest, damping_, exponent_, depth_scale_}, force) - tip_radius_;
+  if (!(tip > 0)) return;
   const auto tell = [&](int level, const ThinWall& wall, const std::string& advice) {
-    writeLog(level, part()->featureName(wall.feature) + thinWallText(wall, force, depth) + "; " + advice);
+    writeLog(level, part()->featureName(wall.feature) + thinWallText(wall, force, depth, tip_radius_) + "; " + advice);
   };
-  const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
+  const std::optional<ThinWall> wall = thinnestWall(*part(), tip);
   if (!wall) return;
   if (contact_hysteresis_ < wall->thickness)
     return tell(HSP_LOG_WARNING, *wall,
@@ -82,10 +86,11 @@ void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
   if (wall->thickness < least)
     tell(HSP_LOG_DEBUG, *wall,
          "few arms render a stiffness that is enough, but the contact is held, so the hand feels it");
-  if (const auto other = wall->thickness < least ? thinnestWall(*part(), depth, least) : wall)
+  if (const auto other = wall->thickness < least ? thinnestWall(*part(), tip, least) : wall)
     tell(HSP_LOG_WARNING, *other,
          "the contact is held all the same, and stiffness: " +
-             std::to_string(static_cast<int>(roundedUp(stiffness_ * std::pow(depth / other->thickness, exponent_)))) +
+             std::to_string(static_cast<int>(
+                 roundedUp(stiffness_ * std::pow(depth / (other->thickness + tip_radius_), exponent_)))) +
              " keeps the tip inside, if the arm is stable with it");
 }
 

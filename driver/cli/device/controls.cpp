@@ -50,7 +50,8 @@ int controls(const std::string& file) {
   for (const diagnostics::Control& c : found->controls)
     std::printf("%-8s %-30s %-26s %s (%s)\n", nameOf(c.state), c.name.c_str(), wordsOf(c.hazards).c_str(),
                 c.text.c_str(), c.hazards.c_str());
-  std::printf("\nThe hazards by their numbers, and the test that shows each control: driver/docs/hazards.md\n");
+  std::printf("\nThe hazards by their numbers, and the test that shows each control: %s\n",
+              guide("hazards.md").c_str());
   return kWorked;
 }
 

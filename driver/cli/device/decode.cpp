@@ -83,7 +83,7 @@ int decode(const DecodeArguments& options) {
     return fail(kBadInput, options.input + ": " + bytes.error() +
                                (options.input == "-" || std::filesystem::exists(options.input)
                                     ? ""
-                                    : ", expected a capture: hapticd device record writes one"));
+                                    : "; hapticd device record writes a capture"));
   const auto form = options.hex ? capture::Form::kHex : options.raw ? capture::Form::kRaw : capture::Form::kGuess;
   const auto taken = capture::readCapture(*bytes, form);
   if (!taken) return fail(kBadInput, options.input + ": " + taken.error());

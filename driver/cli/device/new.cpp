@@ -68,14 +68,15 @@ void printNextSteps(const DeviceDraft& draft, const std::string& name) {
                                      "                 # the same arm simulated, to try a scene without the "
                                      "real arm\n";
   std::printf(
-      "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
+      "%s\n\nthen, step by step (%s, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
       "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
       "  hapticd device record %s               # what the arm sends, motors off\n"
       "%s"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(), name.c_str());
+      name.c_str(), guide("devices.md").c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(),
+      name.c_str());
   if (draft.isPlanar())
     std::printf(
         "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"

@@ -33,7 +33,8 @@ int checkTwinFile(const std::string& file, const std::string& out) {
   return fail(kFailed,
               out + " was written, but its hand cannot reach its start position\n  fix: correct mount in " + file +
                   ", which says where the arm stands (shapes and hand are near the world's origin; without "
-                  "mount, a chain is placed automatically), or correct arm.limits there; then write the twin again");
+                  "mount, a chain is placed automatically), or arm.lengths or arm.limits, which say how far it "
+                  "reaches; then write the twin again");
 }
 
 int makeTwin(const std::string& file, const std::string& wanted) {

@@ -81,10 +81,8 @@ std::optional<fs::path> templateFolder(const std::string& kind) {
 /// Returns the folder of the plugin interface's headers: that of the installation, or that of the source tree from
 /// which the program was built.
 fs::path includeFolder() {
-  std::error_code error;
-  const fs::path source = fs::path(host::buildFolders().source) / "driver/include";
-  if (fs::exists(source / "hapticd/shape.hpp", error)) return source.lexically_normal();
-  return "/usr/include";
+  const auto header = host::ownFile("include/hapticd/shape.hpp", "driver/include/hapticd/shape.hpp");
+  return header ? header->parent_path().parent_path() : fs::path("/usr/include");
 }
 
 /// Prints what to do next. The compiler's command comes first, because it works with and without an installed hapticd.

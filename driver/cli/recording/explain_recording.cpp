@@ -49,14 +49,21 @@ void printRun(const std::string& file, const record::Recording& recording, const
   for (const servo::RunModel& one : models.all()) printModel(one, times);
 }
 
+std::string timesInWords(uint64_t count) {
+  return std::to_string(count) + (count == 1 ? " time" : " times");
+}
+
 /// Prints the events that the log of the run had. Touches and clicks are many, so only their number is printed.
 void printEvents(const std::vector<servo::RecordedMessage>& messages) {
-  std::map<std::string, uint64_t> touched;
+  struct Counts {
+    uint64_t touches = 0, clicks = 0;
+  };
+  std::map<std::string, Counts> felt;
   size_t lines = 0, left = 0;
   std::printf("events\n");
   for (const servo::RecordedMessage& message : messages) {
     if (message.level <= HSP_LOG_DEBUG) {
-      ++touched[message.who];
+      ++(message.kind == HAPTICD_CLICK ? felt[message.who].clicks : felt[message.who].touches);
     } else if (lines++ < kMostLines) {
       std::printf("  %9.4f s  %-7s  %s%s%s\n", message.t, levelName(message.level), message.who.c_str(),
                   message.who.empty() ? "" : ": ", message.text.c_str());
@@ -66,9 +73,9 @@ void printEvents(const std::vector<servo::RecordedMessage>& messages) {
   }
   if (left > 0) std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream events\n", left);
   if (lines == 0) std::printf("  no fault, and no model was silenced, came or left\n");
-  for (const auto& [model, count] : touched)
-    std::printf("  %s was touched or clicked %llu time%s\n", model.c_str(), static_cast<unsigned long long>(count),
-                count == 1 ? "" : "s");
+  for (const auto& [model, counts] : felt)
+    std::printf("  %s was touched %s%s\n", model.c_str(), timesInWords(counts.touches).c_str(),
+                counts.clicks > 0 ? (", and clicked " + timesInWords(counts.clicks) + " (in or out)").c_str() : "");
 }
 
 void printLines(const char* title, const std::vector<std::string>& lines, const char* stream) {

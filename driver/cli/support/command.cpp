@@ -125,6 +125,12 @@ const scene::Daemon& daemonSettings() {
   return daemon;
 }
 
+std::string guide(const std::string& page) {
+  const std::string source = "driver/docs/" + page;
+  const auto file = host::ownFile("share/doc/hapticd/docs/" + page, source);
+  return file ? file->string() : source;
+}
+
 host::Catalog& catalog() {
   static host::Catalog instance = [] {
     host::SearchPath path = host::SearchPath::standard();

@@ -67,6 +67,9 @@ const scene::Daemon& daemonSettings();
 /// environment.
 host::Catalog& catalog();
 
+/// Returns the path of a page of the guides, such as "devices.md".
+std::string guide(const std::string& page);
+
 /// Prints every problem as file:line:column: key: what is wrong, and what was expected.
 void printProblems(const document::Problems& problems, std::FILE* out);
 

@@ -74,6 +74,13 @@ std::optional<fs::path> shippedFile(const fs::path& relative) {
   return std::nullopt;
 }
 
+std::optional<fs::path> ownFile(const fs::path& installed, const fs::path& source) {
+  std::error_code error;
+  for (const fs::path& file : {executableDir() / ".." / installed, fs::path(buildFolders().source) / source})
+    if (fs::exists(file, error)) return file.lexically_normal();
+  return std::nullopt;
+}
+
 namespace {
 
 /// Returns the folders with the modules that ship with this program: beside the program, and in the installation.

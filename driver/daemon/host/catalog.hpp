@@ -95,4 +95,9 @@ std::filesystem::path executableDir();
 /// of them.
 std::optional<std::filesystem::path> shippedFile(const std::filesystem::path& relative);
 
+/// [main] Returns the path of a file that came with this program: `installed`, below the folder into which it was
+/// installed, else `source`, below the sources from which it was built. Returns nothing if neither is there.
+std::optional<std::filesystem::path> ownFile(const std::filesystem::path& installed,
+                                             const std::filesystem::path& source);
+
 }  // namespace hapticd::host

@@ -31,7 +31,7 @@ ModelLine modelLine(const status::Page& page, uint32_t i, const status::Name& na
   line.p50 = step.quantile(0.5), line.p99 = step.quantile(0.99), line.max = step.max();
   line.traced = line.now.tick + kFresh >= tick && std::isfinite(line.now.depth);
   if (!line.traced) line.now.force = 0;
-  line.silenced = servo::silenceReason(line.name, "FILE.so (`hapticd plugin info " + line.plugin + "` names the file)",
+  line.silenced = servo::silenceReason(line.name, servo::fileOfPlugin(line.plugin),
                                        static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
   return line;
 }

@@ -113,6 +113,7 @@ Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcep
   const Eigen::Vector3d out = center_ - p;
   const double depth = out.norm();
   chooseFoot(out, foot);
+  if (depth > radius && foot.status == FootStatus::kNearest) foot.status = FootStatus::kHeld;  // the tip is not outside
   foot.normal = depth > kSettled ? Eigen::Vector3d(out / depth) : bound_.normal;
   foot.depth = depth > 0 ? depth : -gap_;
   foot.distance = std::abs(foot.depth);

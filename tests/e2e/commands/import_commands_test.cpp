@@ -237,6 +237,11 @@ TEST_F(ImportCommands, CheckWarnsOfAWallThatAPressGoesThrough) {
   EXPECT_FALSE(has(check("1100").text, "thick")) << "what is advised is enough";
   EXPECT_TRUE(has(check("800, contact_hysteresis: 0.001").text, "contact_hysteresis is smaller: leave it out"));
   EXPECT_FALSE(has(check("6000").text, "thick"));
+  EXPECT_FALSE(has(check("800, tip_radius: 0.003").text, "thick")) << "the tip stays in front of the plate";
+  const Outcome ball = check("400, tip_radius: 0.0015");
+  EXPECT_TRUE(has(ball.text, "the 1.5 mm of tip_radius, so the tip comes out behind; ")) << ball.text;
+  EXPECT_TRUE(has(ball.text, "stiffness: 590 keeps the tip inside")) << ball.text;
+  EXPECT_FALSE(has(check("590, tip_radius: 0.0015").text, "thick")) << "what is advised is enough";
 }
 
 TEST_F(ImportCommands, AWallThatNoStiffnessMendsIsNoWarning) {

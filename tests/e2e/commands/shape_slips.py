@@ -148,6 +148,9 @@ def scripts(folder, ask):
           "pose: {position: [0, 0, -1.4]}, parameters: {geometry: huge.yaml, stiffness: 800}}\n")
     code, out, _ = ask("check", os.path.join(folder, "huge-scene.yaml"))
     check("a model that is too large is told, and that the hand starts inside, too", "m large; a hand feels" in out and "the hand starts inside ball" in out, out)
+    code, out, _ = told("script: press, radius: 0.05", models=BALL.replace("stiffness: 800", "stiffness: 800, tip_radius: 0.05"))
+    check("a tip of 50 mm that reaches into the model is told, and no surface is turned", code == 0 and "the hand starts inside ball" in out
+          and "a ball of 50 mm about it (tip_radius)" in out and "other side" not in out, out)
     both = f"device: {{file: {SOURCE}/config/devices/simulated-premium15.yaml, hand: {{script: hold, radius: 0.04}}}}\n"
     code, out, _ = told("script: press, radius: 0.05, rise: 0.003, rate: 1", both)
     check("two hands are told, and which holds", code == 0 and "device.hand: warning" in out and "these here hold: script, radius" in out, out)

@@ -45,6 +45,7 @@ CASES = [
     (WIRED, {"max_stiffness: 600": "max_stiffness: |1000000"}, "parameters.device.max_stiffness", "no model would ever be called too stiff"),
     (WIRED, {"mass: 0.2": "mass: |75"}, "parameters.device.mass", "75 g is 0.075 kg"),
     (WIRED, {"lengths: [0.21": "lengths: [|0.021"}, "parameters.arm.lengths[0]", "nearer to its shoulder than 0.149 m"),
+    (WIRED, {"lengths: [0.21, 0.17,": "lengths: |[0.021, 0.017,"}, "parameters.arm.lengths", "reaches 38 mm from its shoulder"),
     (WIRED, {"force: 2,": "force: |0.002,"}, "limits.force", "0.002 kN is 2 N"),
     (WIRED, {"from: 0, to: 8}": "from: 0, to: |6}"}, f"{OUT}[5].to", "leaves out enable, counter: a wrong one"),
     (WIRED, {"crc16-modbus, from: 0, to: 10}": "crc16-modbus, from: 2, to: |10}"}, f"{IN}[5].to", "leaves out counter: a wrong one"),
@@ -320,6 +321,11 @@ def refused(folder):
     problems = [line for line in checked.stdout.splitlines() if line.startswith(double) and ": warning: " not in line]
     check("a twin of a faulty file is refused with the problems that check tells", twin.returncode == 2 and len(problems) == 3 and all(line in twin.stderr for line in problems)
           and not os.path.exists(os.path.join(folder, "double-twin.yaml")), (problems, twin))
+    short, _ = written(os.path.join(folder, "short.yaml"), WIRED, {"lengths: [0.21, 0.17,": "lengths: |[0.021, 0.017,"})
+    twin = hapticd("device", "twin", short, cwd=folder)
+    check("a twin that does not reach its hand is told the lengths, too", twin.returncode == 1 and "arm.lengths or arm.limits" in twin.stderr, twin)
+    decoded = hapticd("device", "decode", short, "none.txt", cwd=folder)
+    check("a capture that is not there is told once", decoded.returncode == 2 and decoded.stderr.count("expected") == 1 and "hapticd device record" in decoded.stderr, decoded)
     soft, _ = written(os.path.join(folder, "soft.yaml"), WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"})
     stiff = hapticd("check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft)
     check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "expected at most 0.6 N/m" not in stiff.stdout, stiff.stdout)

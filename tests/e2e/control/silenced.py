@@ -24,6 +24,10 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     def ask(*arguments):
         return program(HAPTICD, environment)(*(() if arguments[0] == "top" else ("ctl",)), *arguments, "--name", "hush")
 
+    recorded = os.path.join(folder, "run.h5")
+    program(HAPTICD, environment)("run", scene, "--virtual-time", "--for", "1", "--record", recorded)
+    code, out, err = program(HAPTICD, environment)("explain", recorded)
+    check("explain of a recording names a command that finds the file", "plugin check FILE.so (`hapticd plugin info misbehaving` names the file)" in out, (out, err))
     run = subprocess.Popen([HAPTICD, "run", scene, "--name", "hush", "--for", "60"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     try:
         silenced, deadline = [], time.monotonic() + 40

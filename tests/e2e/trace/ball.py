@@ -100,6 +100,10 @@ def states():
     check("and then the ball is where the tip is", abs(rows[-1]["fz"] - 2) < 1e-9, rows[-1]["fz"])
     rows = roll(BLOCK, [(0, 0, 0.01)] * 200, path=[(0, 0, 0, 0, 1, 0, 0, 0), (0.1, 0, 0, 0.009, 1, 0, 0, 0), (0.2, 0, 0, 0.009, 1, 0, 0, 0)])
     check("a block that comes to a ball pushes it", abs(rows[-1]["fz"] - 2) < 1e-9, rows[-1]["fz"])
+    rows = roll(BLOCK, line((0, 0, 0.006), (0, 0, -0.006)))
+    check("deeper than the radius the contact is held", all(r["status"] == (2 if r["depth"] > RADIUS + 1e-9 else 0) for r in rows
+                                                           if abs(r["depth"] - RADIUS) > 1e-9))
+    rows = roll(BLOCK, [(0, 0, 0.01)] * 3)
     check("the depth outside is minus the gap", abs(rows[0]["depth"] + 0.007) < 1e-12, rows[0]["depth"])
 
 

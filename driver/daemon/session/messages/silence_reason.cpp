@@ -44,6 +44,10 @@ std::string causeOf(const Breach& pull) {
 
 }  // namespace
 
+std::string fileOfPlugin(const std::string& plugin) {
+  return "FILE.so (`hapticd plugin info " + plugin + "` names the file)";
+}
+
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
   return silenceReason(model.shape->name(), model.shape->file().string(), model.guard.fault(), model.failed_status,

@@ -12,6 +12,8 @@ struct ModelState;
 struct Breach;
 enum class ShapeFault : uint8_t;
 
+/// [main] Returns words that stand for the file of a plugin where only its name is known.
+std::string fileOfPlugin(const std::string& plugin);
 /// [main] Returns why the model was silenced and what to do; "" if it was not silenced.
 std::string silenceReason(const ModelState& model);
 /// [main] Returns the same text from the data of a model. @param file the file of the plugin @param failed_status the

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "session/messages/event_log.hpp"
+#include "session/messages/silence_reason.hpp"
 
 namespace hapticd::servo {
 
@@ -49,7 +50,8 @@ hapticd_event eventAt(const record::RecordedStream& events, const EventColumns& 
 
 /// Gives a name to each model; to one that the recording does not name, its number.
 void nameModels(PlaceNames& names, const RunModels& models) {
-  for (const RunModel& one : models.all()) names.came(one.number, one.since, {one.model.name, one.model.plugin});
+  for (const RunModel& one : models.all())
+    names.came(one.number, one.since, {one.model.name, fileOfPlugin(one.model.plugin)});
   for (uint32_t place = 0; place < kMostPlaces; ++place)
     if (models.find(place, HUGE_VAL) == RunModels::kNone) names.came(place, 0, {models.nameOf(place, 0), ""});
 }
@@ -74,7 +76,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
     EventLog::Message message = log.messageOf(event);
     log.note(event);
     if (!message.text.empty())
-      messages.push_back({event.t, message.level, std::move(message.who), std::move(message.text)});
+      messages.push_back({event.t, event.kind, message.level, std::move(message.who), std::move(message.text)});
   }
   return messages;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The events of a recording in words, as the log of the run had them.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace hapticd::servo {
 
 struct RecordedMessage {
   double t = 0;           ///< [s] since the first tick
+  uint32_t kind = 0;      ///< HAPTICD_TOUCH, ...
   int level = 0;          ///< HSP_LOG_DEBUG, ...
   std::string who, text;  ///< the model or the arm; empty if the text names it
 };

@@ -154,15 +154,21 @@ void checkCounts(const ArmUnderCheck& arm_file) {
                   arm_file.info.resolution_m * 1e3));
 }
 
-/// Warns of two links of very different lengths, because the tip then cannot come near the shoulder.
+/// Warns of two links that are too short for a hand, or of very different lengths, because the tip then cannot come
+/// near the shoulder.
 void checkLengths(const ArmUnderCheck& arm_file) {
-  constexpr double kUnlike = 5;
+  constexpr double kUnlike = 5, kShort = 0.05;  // [m]
   const Node *lengths = find(arm_file.root, {"parameters", "arm", "lengths"}),
              *kind = find(arm_file.root, {"parameters", "arm", "kind"});
   if (lengths == nullptr || kind == nullptr || kind->scalar != "phantom" || lengths->items.size() < 2) return;
   const double a = document::toNumber(lengths->items[0].scalar).value_or(0),
                b = document::toNumber(lengths->items[1].scalar).value_or(0), less = std::min(a, b),
                more = std::max(a, b);
+  if (less > 0 && more < kShort)
+    return arm_file.warn(*lengths, "parameters.arm.lengths",
+                         fmt::format("the links have {:g} m and {:g} m: the tip reaches {:.3g} mm from its shoulder; "
+                                     "is the decimal point wrong? The values must be in m: 20 cm is 0.2 m",
+                                     a, b, (a + b) * 1e3));
   if (less <= 0 || more < kUnlike * less) return;
   const Node& at = lengths->items[a < b ? 0 : 1];
   arm_file.warn(

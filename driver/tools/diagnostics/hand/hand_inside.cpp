@@ -34,6 +34,11 @@ Eigen::Vector3d centerInModel(const scene::Device& device, const HandScript& han
 
 }  // namespace
 
+double ballOf(const scene::Model& model) {
+  const scene::Value* radius = givenIn(model.parameters, "tip_radius");
+  return radius != nullptr ? radius->number : 0;
+}
+
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape) {
   Eigen::AlignedBox3d box;
@@ -52,9 +57,11 @@ bool passesAround(const scene::Device& device, const HandScript& hand, const sce
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings) {
   const scene::Model& model = scene.models[inside.model];
   const scene::Device& device = scene.devices[inside.device];
-  const std::string where =
-      fmt::format("the hand starts inside {}: the tip is at [{:.4g}, {:.4g}, {:.4g}] m in the world, {:.3g} mm deep",
-                  model.name, inside.tip.x(), inside.tip.y(), inside.tip.z(), inside.depth * 1e3);
+  const double ball = ballOf(model);
+  const std::string where = fmt::format(
+      "the hand starts inside {}: the tip is at [{:.4g}, {:.4g}, {:.4g}] m in the world, {}{:.3g} mm deep", model.name,
+      inside.tip.x(), inside.tip.y(), inside.tip.z(),
+      ball > 0 ? fmt::format("and a ball of {:.3g} mm about it (tip_radius) is ", ball * 1e3) : "", inside.depth * 1e3);
   if (inside.beyond_box) return reportTurned(scene, inside, where, warnings);
   const scene::Value* radius = givenIn(device.parameters, "hand.radius");
   if (inside.radius && radius != nullptr && radius->place.file == scene.file.string())

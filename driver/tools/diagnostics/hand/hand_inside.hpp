@@ -17,10 +17,13 @@ struct InsideTip {
   size_t model = 0, device = 0;
   Eigen::Vector3d tip;             ///< [m] world
   double depth = 0;                ///< [m]
-  bool beyond_box = false;         ///< the tip is outside the box round the model's surfaces
+  bool beyond_box = false;         ///< the tip is outside the box round the model's surfaces, and no ball reaches in
   bool round = false;              ///< the centre of the hand's script is inside that box
   std::optional<double> radius{};  ///< [m] a hand.radius with which the hand starts outside and touches a model
 };
+
+/// Returns the radius [m] of the ball that touches the model (tip_radius), 0 for a point.
+double ballOf(const scene::Model& model);
 
 /// Returns true if the centre of the hand's script lies in the box of the model: the hand then moves round the model.
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,

@@ -91,7 +91,8 @@ std::vector<InsideTip> tipsInside(const scene::Scene& scene, const servo::World&
       InsideTip inside{model, hands[tip].device, hands[tip].probe.position, contact.world.depth_m};
       Eigen::AlignedBox3d box;
       if (shape.bounds(box.min().data(), box.max().data()))
-        inside.beyond_box = !box.contains(core.models()[model].frame.pointToModel(inside.tip));
+        inside.beyond_box = inside.depth > ballOf(scene.models[model]) &&
+                            !box.contains(core.models()[model].frame.pointToModel(inside.tip));
       const auto hand = handScriptOf(device);
       constexpr double kAbout = 0.3;  // [m] a hand does not go round a larger model
       inside.round = hand && hand->moves() && hand->radius + inside.depth < kAbout &&

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "diagnostics/device/arm_controls.hpp"
+#include "host/catalog.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -68,11 +69,12 @@ std::optional<Finding> withoutRule(const ArmControls& found, const std::string& 
   const size_t colon = found.usb_id.find(':');
   if (colon == std::string::npos) return std::nullopt;
   if (hasRule(lowerCase(found.usb_id.substr(0, colon)), lowerCase(found.usb_id.substr(colon + 1)))) return std::nullopt;
-  return Finding{found.arm, Verdict::kWarn, "no installed udev rule names its id " + found.usb_id,
-                 "only root can open it",
-                 "in the folder of hapticd's sources: udev/generate-rules " + fs::absolute(file).string() +
-                     " | sudo tee /etc/udev/rules.d/70-" + fs::path(file).stem().string() +
-                     ".rules && sudo udevadm control --reload && sudo udevadm trigger"};
+  const auto generator = host::ownFile("share/hapticd/generate-rules", "udev/generate-rules");
+  return Finding{
+      found.arm, Verdict::kWarn, "no installed udev rule names its id " + found.usb_id, "only root can open it",
+      (generator ? generator->string() : "in the folder of hapticd's sources: udev/generate-rules") + " " +
+          fs::absolute(file).string() + " | sudo tee /etc/udev/rules.d/70-" + fs::path(file).stem().string() +
+          ".rules && sudo udevadm control --reload && sudo udevadm trigger"};
 }
 
 std::optional<Finding> repeats(const ArmControls& found, const std::string& file) {

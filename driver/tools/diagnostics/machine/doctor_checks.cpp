@@ -15,6 +15,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "diagnostics/machine/device_bus.hpp"
+#include "host/catalog.hpp"
 #include "watch/quarantine.hpp"
 
 namespace hapticd::diagnostics {
@@ -27,10 +28,18 @@ Finding ok(std::string name, std::string state) {
   return {std::move(name), Verdict::kOk, std::move(state), "", ""};
 }
 
-/// The command if hapticd was built from its sources; the packages do the same.
-constexpr const char* kInstallLimits =
-    "in the folder of hapticd's sources: sudo install -m 644 config/systemd/70-hapticd.limits "
-    "/etc/security/limits.d/70-hapticd.conf";
+/// The command without a package, which does the same. @param installed, source where the file may be (ownFile())
+std::string installCommand(const char* installed, const char* source, const char* to) {
+  const auto file = host::ownFile(installed, source);
+  return (file ? "sudo install -m 644 " + file->string()
+               : std::string("in the folder of hapticd's sources: sudo install -m 644 ") + source) +
+         " " + to;
+}
+
+std::string installLimits() {
+  return installCommand("etc/security/limits.d/70-hapticd.conf", "config/systemd/70-hapticd.limits",
+                        "/etc/security/limits.d/70-hapticd.conf");
+}
 
 /// Checks real-time rights by asking for them, not by reading limits.
 Finding checkScheduler() {
@@ -71,7 +80,7 @@ Finding checkMemory() {
   if (!code) return ok("memory", "can be locked");
   return {"memory", Verdict::kFail, "mlockall() is refused: " + code.message() + "; " + os::realTimeRights(),
           "a page fault can delay a tick by milliseconds",
-          std::string(kInstallLimits) + ", then log in again: it raises memlock to 524288 KiB for the group haptic"};
+          installLimits() + ", then log in again: it raises memlock to 524288 KiB for the group haptic"};
 }
 
 Finding checkThrottling() {
@@ -126,7 +135,7 @@ Finding checkLimits() {
   return {"limits", geteuid() == 0 ? Verdict::kWarn : Verdict::kFail,
           state + "; expected rtprio 80 and memlock 524288 KiB",
           "the servo thread may get no real-time priority, or its memory may not be locked",
-          std::string(kInstallLimits) + ", then log in again"};
+          installLimits() + ", then log in again"};
 }
 
 /// Checks the udev rules. They must sort before 73-seat-late, or a person at the seat gets no access.
@@ -145,9 +154,8 @@ Finding checkUdev() {
       "udev", Verdict::kWarn,
       found.empty() ? "no rule for haptic devices is installed" : found + " sorts after 73 or does not end in .rules",
       "only root can open devices; simulated devices need no rule",
-      "in the folder of hapticd's sources: sudo install -m 644 udev/70-hapticd.rules /etc/udev/rules.d/ && sudo "
-      "udevadm control --reload && sudo udevadm "
-      "trigger"};
+      installCommand("lib/udev/rules.d/70-hapticd.rules", "udev/70-hapticd.rules", "/etc/udev/rules.d/") +
+          " && sudo udevadm control --reload && sudo udevadm trigger"};
 }
 
 Finding checkKernel() {

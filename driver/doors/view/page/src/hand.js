@@ -112,14 +112,16 @@ export class Hand {
   }
 
   /** Returns the place under the pointer. It is in the plane through `through` that faces the viewer, or just behind
-   * the surface of the model under the pointer, whichever is deeper. */
+   * the surface of the model under the pointer, whichever is deeper; a ball touches it by its radius earlier. */
   #placeAt(x, y, through) {
     const {canvas, orbit, models} = this.view, caster = new Raycaster(), {ray} = caster;
     caster.setFromCamera(new Vector2(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight), orbit.camera);
     const forward = orbit.forward(), along = ray.direction.dot(forward);
     const plane = through.clone().sub(ray.origin).dot(forward) / along;
     const [hit] = caster.intersectObjects([...models.byIndex.values()].map(({mesh}) => mesh), false);
-    return ray.at(hit ? Math.max(plane, hit.distance + kPress) : plane, new Vector3());
+    if (!hit) return ray.at(plane, new Vector3());
+    const [model] = [...models.byIndex].find(([, {mesh}]) => mesh === hit.object);
+    return ray.at(Math.max(plane, hit.distance + kPress - (this.view.balls[model] ?? 0)), new Vector3());
   }
 
   #down(e) {

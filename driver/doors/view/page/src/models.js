@@ -46,7 +46,7 @@ export class Models {
   constructor() {
     this.group = new Group();
     this.byIndex = new Map();
-    this.ball = 0; // m: radius of the tip; the foot point of a ball is so far above the surface
+    this.balls = []; // [m] by model: the foot point of a ball is so far above the surface
   }
 
   /** Removes all models. */
@@ -113,7 +113,7 @@ export class Models {
       const mine = contacts.filter((c) => c.model === index && c.depth > 0);
       model.mesh.material.userData.stains.value.forEach((stain, i) => {
         const c = mine[i];
-        if (c) stain.set(...c.point.map((x, k) => x - this.ball * c.normal[k]), 0.3 + 0.65 * Math.min(1, c.depth / full));
+        if (c) stain.set(...c.point.map((x, k) => x - (this.balls[index] ?? 0) * c.normal[k]), 0.3 + 0.65 * Math.min(1, c.depth / full));
         else stain.w = 0;
       });
     }

@@ -57,13 +57,19 @@ export class Probe {
   }
 
   /** Sets the size of the tip. @param size [m] radius of the drawn tip if it is a point
-   * @param ball [m] radius of the tip in the scene, 0 for a point */
-  resize(size, ball = 0) {
+   * @param balls [m] radius of the ball with which each model is touched, 0 for a point */
+  resize(size, balls = []) {
     this.size = size;
-    this.ball = ball;
-    this.tip.scale.setScalar(ball || size);
-    this.ghost.scale.setScalar((ball || size) * 1.3);
+    this.balls = balls;
     this.foot.scale.setScalar(size * 1.4);
+    this.#ball(null);
+  }
+
+  /** Draws the tip as the ball that touches the nearest model; with none near, as the largest one. */
+  #ball(best) {
+    this.ball = best ? (this.balls[best.model] ?? 0) : Math.max(0, ...this.balls);
+    this.tip.scale.setScalar(this.ball || this.size);
+    this.ghost.scale.setScalar((this.ball || this.size) * 1.3);
   }
 
   colors({tip, accent, force, link}) {
@@ -79,6 +85,7 @@ export class Probe {
     this.tip.visible = now.valid;
     this.tipPlace.set(...now.position);
     const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
+    this.#ball(best);
     // The felt surface of a ball is that of its centre: the foot point is the centre of the ball that a rigid model keeps out.
     const kept = this.ball && best?.depth > 0 && !models.deforms(best.model);
     if (now.valid) this.tip.position.set(...(kept ? best.point : now.position));
