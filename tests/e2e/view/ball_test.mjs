@@ -28,12 +28,12 @@ async function drawn(sandbox, open, name, radius, models) {
   const page = await open((await sandbox.start(['view', '--file', h5]).says(/http:\S+/))[0]);
   await shown(page);
   await page.waitForFunction(() => window.hapticdView.fitted); // the radius is known
-  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
-  const found = await (await page.waitForFunction(() => {
-    const {now, view} = window.hapticdView, [probe] = view.probes;
-    const depth = Math.max(...now.current().map((contact) => contact.depth));
-    return depth > 1e-3 && probe.tip.position.distanceTo(probe.tipPlace) > 5e-4 && {depth, ball: probe.tip.scale.x, above: probe.tip.position.z - 0.05, tip: probe.tipPlace.z - 0.05};
-  })).jsonValue();
+  await page.waitForFunction(() => Math.max(...window.hapticdView.now.current().map((contact) => contact.depth)) > 1e-3);
+  const found = await page.evaluate(async () => {
+    for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn)); // with these contacts
+    const {view: {probes: [probe]}} = window.hapticdView;
+    return {ball: probe.tip.scale.x, above: probe.tip.position.z - 0.05, tip: probe.tipPlace.z - 0.05};
+  });
   await page.screenshot({path: join(pictures, `${name}.png`)});
   return found;
 }

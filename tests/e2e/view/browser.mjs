@@ -91,11 +91,15 @@ export function look(page) {
       const c = mul(p, mul(e, [x, y, z, 1]));
       return [(c[0] / c[3] + 1) / 2 * view.canvas.clientWidth, (1 - c[1] / c[3]) / 2 * view.canvas.clientHeight];
     };
+    const place = (i) => { // of the arm, or of the proxy of a ball that touches
+      const best = now.current().filter((c) => c.probe === i).reduce((a, b) => (a?.depth >= b.depth ? a : b), null);
+      return best?.depth > 0 && view.balls[best.model] ? best.point : now.arms[i].now.position;
+    };
     return {
       frames: view.frames, tick: now.tick.tick, t: now.tick.t, depth: now.tick.depth,
       tips: view.probes.map((probe, i) => {
         const m = probe.tip.matrixWorld.elements;
-        return {drawn: project(m[12], m[13], m[14]), row: project(...now.arms[i].now.position), visible: probe.tip.visible,
+        return {drawn: project(m[12], m[13], m[14]), row: project(...place(i)), visible: probe.tip.visible,
           sent: now.arms[i].now.sent, arrow: probe.shaft.visible, head: probe.head.position.toArray(), at: probe.tipPlace.toArray()};
       }),
       plots: plots.all.map((plot) => ({title: plot.root.querySelector('span').textContent, points: plot.extremes.times.length,
