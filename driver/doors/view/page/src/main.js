@@ -175,8 +175,7 @@ class Page {
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
       if (answer.mesh) this.view.models.add(model.index, {...model, pose}, answer.mesh);
     }
-    this.fresh = true; // the tip is drawn with its radius, also in a recording that rests
-    this.view.measure(scene);
+    this.view.measure(scene), this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
     this.fitted = this.fitWhenTip = true;
