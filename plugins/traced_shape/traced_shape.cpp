@@ -79,6 +79,7 @@ void TracedShape::deactivate() {
   model_.reset();
   part_tracers_.clear();
   part_.reset();
+  balls_.clear();
 }
 
 void TracedShape::reset() noexcept HSP_RT {

@@ -93,16 +93,17 @@ Eigen::Vector3d HalfSpaces::nearestTo(const Eigen::Vector3d& p) noexcept {
     clear();
     return p;
   }
+  // all that can hold a point, the newest planes first; so the last plane of each shows whether there are so many
+  static constexpr Subset kSubsets[] = {{{0}, 1},       {{1}, 1},       {{2}, 1},       {{3}, 1},      {{0, 1}, 2},
+                                        {{0, 2}, 2},    {{0, 3}, 2},    {{1, 2}, 2},    {{1, 3}, 2},   {{2, 3}, 2},
+                                        {{0, 1, 2}, 3}, {{0, 1, 3}, 3}, {{0, 2, 3}, 3}, {{1, 2, 3}, 3}};
   Eigen::Vector3d x;
-  for (int size = 1; size <= std::min(count_, 3); ++size)
-    for (int i = 0; i < count_; ++i)
-      for (int j = size > 1 ? i + 1 : i; j < (size > 1 ? count_ : i + 1); ++j)
-        for (int k = size > 2 ? j + 1 : j; k < (size > 2 ? count_ : j + 1); ++k) {
-          const Subset held{{i, j, k}, size};
-          if (!solve(held, p, x)) continue;
-          keep(held);
-          return x;
-        }
+  for (const Subset& held : kSubsets) {
+    const int last = held.planes[static_cast<std::size_t>(held.size) - 1];
+    if (last >= count_ || !solve(held, p, x)) continue;
+    keep(held);
+    return x;
+  }
   keep({{0}, 1});
   return p - std::min(planes_[0].height(p), 0.0) * planes_[0].normal;
 }

@@ -35,8 +35,7 @@ Eigen::Vector3d centerInModel(const scene::Device& device, const HandScript& han
 }  // namespace
 
 double ballOf(const scene::Model& model) {
-  const scene::Value* radius = givenIn(model.parameters, "tip_radius");
-  return radius != nullptr ? radius->number : 0;
+  return numberIn(model.parameters, "tip_radius");
 }
 
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,

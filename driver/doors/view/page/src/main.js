@@ -175,7 +175,8 @@ class Page {
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
       if (answer.mesh) this.view.models.add(model.index, {...model, pose}, answer.mesh);
     }
-    this.view.measure(scene), this.fresh = true; // the tip has its radius, also in a recording that rests
+    this.view.measure(scene);
+    this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
     this.fitted = this.fitWhenTip = true;
@@ -229,8 +230,8 @@ class Page {
     if (!now) return;
     this.hand.look(time);
     this.plots?.redraw(now.tick.t, time);
-    if (!this.fresh && !view.dirty) return;
-    if (this.fresh) this.#update();
+    if (!this.fresh) return;
+    this.#update();
     this.fresh = false;
     view.dirty = true;
   }

@@ -46,7 +46,7 @@ export class Models {
   constructor() {
     this.group = new Group();
     this.byIndex = new Map();
-    this.balls = []; // [m] by model: the foot point of a ball is so far above the surface
+    this.balls = []; // [m] radius of the ball with which each model is touched, 0 for a point; its foot point is so far above the surface
   }
 
   /** Removes all models. */

@@ -53,21 +53,19 @@ export class Probe {
     this.ghost.visible = this.tether.visible = this.tip.visible = false;
     this.tipPlace = new Vector3();
     this.showForce = true;
+    this.ball = 0; // m: radius of the ball that is drawn
     this.resize(kUsualTip);
   }
 
-  /** Sets the size of the tip. @param size [m] radius of the drawn tip if it is a point
-   * @param balls [m] radius of the ball with which each model is touched, 0 for a point */
-  resize(size, balls = []) {
+  /** Sets the size of the tip. @param size [m] radius of the drawn tip if it is a point */
+  resize(size) {
     this.size = size;
-    this.balls = balls;
     this.foot.scale.setScalar(size * 1.4);
-    this.#ball(null);
   }
 
   /** Draws the tip as the ball that touches the nearest model; with none near, as the largest one. */
-  #ball(best) {
-    this.ball = best ? (this.balls[best.model] ?? 0) : Math.max(0, ...this.balls);
+  #ball(best, {balls}) {
+    this.ball = best ? (balls[best.model] ?? 0) : Math.max(0, ...balls);
     this.tip.scale.setScalar(this.ball || this.size);
     this.ghost.scale.setScalar((this.ball || this.size) * 1.3);
   }
@@ -85,7 +83,7 @@ export class Probe {
     this.tip.visible = now.valid;
     this.tipPlace.set(...now.position);
     const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
-    this.#ball(best);
+    this.#ball(best, models);
     // The felt surface of a ball is that of its centre: the foot point is the centre of the ball that a rigid model keeps out.
     const kept = this.ball && best?.depth > 0 && !models.deforms(best.model);
     if (now.valid) this.tip.position.set(...(kept ? best.point : now.position));

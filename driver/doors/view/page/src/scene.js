@@ -37,7 +37,6 @@ export class View {
     this.orbit = new OrbitCamera();
     this.models = new Models();
     this.probes = [];
-    this.balls = []; // [m] radius of the ball with which each model is touched, 0 for a point
     this.light = new DirectionalLight('#ffffff', 2.1);
     this.scene.add(this.models.group, new HemisphereLight('#ffffff', '#8d99a6', 1.6), this.light);
     this.workspaceMaterial = new LineBasicMaterial();
@@ -96,9 +95,8 @@ export class View {
   measure(models) {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
-    this.balls = models.map(({parameters}) => parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0);
-    this.models.balls = this.balls;
-    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006), this.balls);
+    this.models.balls = models.map(({parameters}) => parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0);
+    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006));
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';
     this.show('wire', this.shown.wire);
