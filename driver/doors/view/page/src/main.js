@@ -226,14 +226,13 @@ class Page {
   }
 
   #frame(time) {
-    const {now, view} = this;
-    if (!now) return;
+    if (!this.now) return;
     this.hand.look(time);
-    this.plots?.redraw(now.tick.t, time);
+    this.plots?.redraw(this.now.tick.t, time);
     if (!this.fresh) return;
     this.#update();
     this.fresh = false;
-    view.dirty = true;
+    this.view.dirty = true;
   }
 
   #update() {
