@@ -30,8 +30,7 @@ void BallProxy::adaptStride(bool clear, const Eigen::Vector3d& before, const Eig
 
 /// Turns the plane about its foot, so that it faces a ball about `center`.
 void BallProxy::faceFrom(const Eigen::Vector3d& center, double radius) noexcept {
-  const Eigen::Vector3d normal = (center - bound_.foot.point).normalized();
-  bound_ = {normal, normal.dot(bound_.foot.point) + radius, bound_.foot};
+  bound_ = beyond(support_.point, (center - support_.point).normalized(), radius);
 }
 
 /// Takes the foot of the centre, and sets the plane that it puts before the ball. A ball that is inside is pushed out
@@ -41,7 +40,8 @@ void BallProxy::faceFrom(const Eigen::Vector3d& center, double radius) noexcept 
 double BallProxy::look(const Foot& foot, const Eigen::Vector3d& p, double radius) noexcept {
   constexpr double kNoDirection = 1e-9;  // [m] on the surface, rounding errors would give the direction
   const bool outside = !(foot.depth > 0);
-  bound_ = {foot.normal, foot.normal.dot(foot.point) + radius, foot};
+  support_ = {foot.point, foot.u, foot.v, foot.residual, foot.surface, foot.on_edge};
+  bound_ = beyond(foot.point, foot.normal, radius);
   if (outside && foot.distance > kNoDirection) faceFrom(center_, radius);
   const double gap = (outside ? foot.distance : -foot.depth) - radius;
   gap_ = std::max(gap, 0.0);
@@ -64,11 +64,11 @@ double BallProxy::look(const Foot& foot, const Eigen::Vector3d& p, double radius
 Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p, double radius) noexcept {
   const double farthest = (reached_ - p).norm() + (has_reached_ ? kSettled : radius);
   const auto isFar = [&](const Eigen::Vector3d& target) { return fits_ && (target - p).norm() > farthest; };
-  Eigen::Vector3d target = free_.nearestTo(p);
+  Eigen::Vector3d target = supports_.nearestTo(p);
   if (!isFar(target)) return target;
-  free_.clear();
-  free_.add(bound_);
-  target = free_.nearestTo(p);
+  supports_.clear();
+  supports_.add(bound_, support_);
+  target = supports_.nearestTo(p);
   return isFar(target) ? reached_ : target;
 }
 
@@ -77,17 +77,22 @@ Eigen::Vector3d BallProxy::nearestFree(const Eigen::Vector3d& p, double radius) 
 /// @param out from the probe to the centre [m]
 void BallProxy::chooseFoot(const Eigen::Vector3d& out, Foot& foot) noexcept {
   constexpr double kClearly = 0.05;  // share of the whole push
-  const HalfSpace *most = nullptr, *same = nullptr;
-  for (const HalfSpace& plane : free_) {
-    const auto away = [this](const HalfSpace& other) { return (other.foot.point - last_foot_).squaredNorm(); };
-    if (most == nullptr || plane.normal.dot(out) > most->normal.dot(out)) most = &plane;
-    if (same == nullptr || away(plane) < away(*same)) same = &plane;
+  const auto push = [&](std::size_t i) { return supports_.normal(i).dot(out); };
+  const auto away = [&](std::size_t i) { return (supports_[i].point - last_foot_).squaredNorm(); };
+  std::size_t most = 0, same = 0;
+  for (std::size_t i = 1; i < supports_.size(); ++i) {
+    if (push(i) > push(most)) most = i;
+    if (away(i) < away(same)) same = i;
   }
-  if (most != nullptr) {
-    const bool stays = most->normal.dot(out) < same->normal.dot(out) + kClearly * out.norm();
-    const FootStatus status = foot.status;
-    foot = (stays ? same : most)->foot;
-    foot.status = status;
+  if (supports_.size() > 0) {
+    const bool stays = push(most) < push(same) + kClearly * out.norm();
+    const Support& felt = supports_[stays ? same : most];
+    foot.point = felt.point;
+    foot.u = felt.u;
+    foot.v = felt.v;
+    foot.residual = felt.residual;
+    foot.surface = felt.surface;
+    foot.on_edge = felt.on_edge;
   }
   last_foot_ = foot.point;
 }
@@ -100,7 +105,7 @@ Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcep
     center_ = reached_;
     gap_ = 0;
     faceFrom(center_, radius);
-    free_.turnTo(center_, radius);
+    supports_.turnTo(center_, radius);
   }
   if (!found(foot) || !fits_) {
     forget();

@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "kernels/contact/ball_supports.hpp"
 #include "kernels/contact/foot.hpp"
-#include "kernels/contact/half_spaces.hpp"
 
 namespace hapticd::contact {
 
@@ -56,8 +56,9 @@ class BallProxy {
   Eigen::Vector3d reached_{0, 0, 0};    ///< [m] the centre nearest to the probe at which the ball was seen to be free
   Eigen::Vector3d asked_{0, 0, 0};      ///< [m] the last centre whose foot was asked for
   Eigen::Vector3d last_foot_{0, 0, 0};  ///< [m] on the surface: see chooseFoot()
-  HalfSpace bound_;                     ///< what the foot of the centre leaves free
-  HalfSpaces free_;                     ///< what the feet that hold the ball leave free
+  Support support_;                     ///< the foot of the centre
+  HalfSpace bound_;                     ///< what this foot leaves free
+  BallSupports supports_;               ///< the feet that hold the ball
   double gap_ = 0;                      ///< [m] the centre may go so far in every direction
   double stride_ = 1;                   ///< see adaptStride()
   double lag_ = 0;                      ///< see lag()
@@ -78,9 +79,9 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
   known_ = true;
   Foot foot;
   int evaluations = 0;
-  free_.age();
+  supports_.age();
   bool leans = false;
-  Eigen::Vector3d target = free_.nearestTo(p);
+  Eigen::Vector3d target = supports_.nearestTo(p);
   for (int feet_left = kMostFeet; feet_left > 0; --feet_left) {
     const Eigen::Vector3d way = target - center_;
     const double longest = leans ? kLean : std::max({gap_, radius, way.norm() / feet_left});
@@ -91,13 +92,13 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
     if (!found(foot)) break;
     const double gap = look(foot, p, radius);
     const bool clear = gap > kTouching + foot.residual * foot.residual / radius;  // an error along the surface
-    if (clear) free_.turnTo(center_, radius);
-    free_.add(bound_);
+    if (clear) supports_.turnTo(center_, radius);
+    supports_.add(bound_, support_);
     target = nearestFree(p, radius);
     adaptStride(clear, way, target - center_);
     leans = gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled;
     if (!leans) continue;
-    if (feet_left < 4 || !free_.dropOld(center_, radius, kSettled)) break;
+    if (feet_left < 4 || !supports_.dropOld(center_, radius, kSettled)) break;
     target = nearestFree(p, radius);
   }
   foot = felt(foot, p, radius);

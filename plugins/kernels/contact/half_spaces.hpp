@@ -3,8 +3,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
-
-#include "kernels/contact/foot.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
 namespace hapticd::contact {
 
@@ -12,44 +13,29 @@ namespace hapticd::contact {
 struct HalfSpace {
   Eigen::Vector3d normal{0, 0, 1};  ///< unit vector into the half-space
   double offset = 0;                ///< [m] distance of its plane from the origin, along the normal
-  Foot foot{};                      ///< for a ball: its centre must stay away from this foot
-  bool old = false;                 ///< for a ball: the foot is of an earlier tick
 
   double height(const Eigen::Vector3d& x) const noexcept { return normal.dot(x) - offset; }  ///< [m] > 0 inside
 };
 
-/// The common part of up to four half-spaces.
-class HalfSpaces {
- public:
-  void clear() noexcept { count_ = 0; }            ///< [rt]
-  void add(const HalfSpace& half_space) noexcept;  ///< [rt] drops the oldest if there are four already
-  void age() noexcept;                             ///< [rt] makes all old
-  /// [rt] Drops the old ones whose feet are farther than `touching` [m] from a ball about `center`: there the face may
-  /// have ended. Returns whether there was one.
-  bool dropOld(const Eigen::Vector3d& center, double radius, double touching) noexcept;
-  /// [rt] Turns each plane about its foot, so that it faces a ball of this radius about `center`, which touches no
-  /// foot. Drops a single one: on a convex surface the next takes its place.
-  void turnTo(const Eigen::Vector3d& center, double radius) noexcept;
-  /// [rt] Returns the point of the common part that is nearest to p, and keeps only the half-spaces whose planes hold
-  /// it back. If the half-spaces have no common point, only the newest counts. The nearest point is the one that is
-  /// held by pushes alone: p plus positive multiples of the normals (Karush, Kuhn and Tucker; Nocedal and Wright,
-  /// Numerical Optimization, 2nd ed., 16.1). In space three planes at most can hold it.
-  Eigen::Vector3d nearestTo(const Eigen::Vector3d& p) noexcept;
-  const HalfSpace* begin() const noexcept { return planes_.data(); }         ///< [rt]
-  const HalfSpace* end() const noexcept { return planes_.data() + count_; }  ///< [rt]
+inline constexpr std::size_t kMostHalfSpaces = 4;
 
- private:
-  static constexpr int kMost = 4;
-  struct Subset {
-    std::array<int, 3> planes{};
-    int size = 0;
-  };
-  bool solve(const Subset& held, const Eigen::Vector3d& p, Eigen::Vector3d& x) const noexcept;
-  bool holds(const Eigen::Vector3d& x) const noexcept;
-  void keep(const Subset& held) noexcept;
-
-  std::array<HalfSpace, kMost> planes_{};  ///< newest first: of two that hold equally, the newer one is kept
-  int count_ = 0;
+/// Planes that hold a point back. In space three at most can do so.
+struct Holders {
+  std::array<std::uint8_t, 3> planes{};  ///< indices in rising order
+  std::uint8_t size = 0;
 };
+
+/// A point, and the planes that hold it back from where it would go.
+struct HeldPoint {
+  Eigen::Vector3d point{0, 0, 0};  ///< [m]
+  Holders by{};
+};
+
+/// [rt] Returns the point of the common part of the half-spaces that is nearest to p [m]. If they have no common point,
+/// only the first counts; of planes that hold equally, the first. The nearest point is the one that is held by pushes
+/// alone: p plus positive multiples of the normals (Karush, Kuhn and Tucker; Nocedal and Wright, Numerical
+/// Optimization, 2nd ed., 16.1).
+/// @param spaces kMostHalfSpaces at most
+HeldPoint nearestCommonPoint(std::span<const HalfSpace> spaces, const Eigen::Vector3d& p) noexcept;
 
 }  // namespace hapticd::contact

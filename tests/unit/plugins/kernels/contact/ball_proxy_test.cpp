@@ -34,9 +34,9 @@ Foot footOf(const Vector3d& p, const Vector3d& point, const Vector3d& normal) {
 /// All but the common part of half-spaces is solid: a floor, a groove, a corner.
 World hollow(const std::vector<HalfSpace>& faces) {
   const auto nearest_free = [faces](const Vector3d& p, double radius) {
-    HalfSpaces free;
-    for (const HalfSpace& face : faces) free.add({face.normal, face.offset + radius});
-    return free.nearestTo(p);
+    std::vector<HalfSpace> free;
+    for (const HalfSpace& face : faces) free.push_back({face.normal, face.offset + radius});
+    return nearestCommonPoint(free, p).point;
   };
   const auto foot_at = [faces, nearest_free](const Vector3d& p) {
     const HalfSpace* nearest = nullptr;
