@@ -12,16 +12,11 @@ function(hapticd_use_precompiled target headers)
 endfunction()
 
 function(hapticd_precompile headers)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;ROOMS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
   file(WRITE ${CMAKE_BINARY_DIR}/${headers}.cpp "// nothing: its target precompiles headers\n")
   add_library(${headers} OBJECT ${CMAKE_BINARY_DIR}/${headers}.cpp)
   target_link_libraries(${headers} PRIVATE hapticd_options ${arg_LIBRARIES})
   target_precompile_headers(${headers} PRIVATE ${arg_HEADERS})
-  foreach(room IN LISTS arg_ROOMS)
-    if(TARGET ${room})
-      hapticd_use_precompiled(${room} ${headers} ${arg_LIBRARIES})
-    endif()
-  endforeach()
 endfunction()
 
 find_package(nlohmann_json REQUIRED)
@@ -31,17 +26,30 @@ target_link_libraries(hapticd_precompiled_json INTERFACE nlohmann_json::nlohmann
 
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(standard <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <functional> <memory> <optional> <string> <vector>)
-  hapticd_precompile(hapticd_headers HEADERS <Eigen/Geometry> ${standard} LIBRARIES Eigen3::Eigen ROOMS
-    hapticd_base hapticd_status hapticd_watch hapticd_codec hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
-    hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep_contact hapticd_brep_elements
-    hapticd_brep_geometry hapticd_brep_model hapticd_brep_search hapticd_brep_tree hapticd_contact hapticd_dynamics
-    hapticd_medial hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
-    nurbs_rigid_objects pendulum_objects push_button_objects hapticd_wire_arm usb_hid_objects usb_bulk_objects vme_objects
-    vendor_hd_objects vendor_dhd_objects)
+  hapticd_precompile(hapticd_headers HEADERS <Eigen/Geometry> ${standard} LIBRARIES Eigen3::Eigen)
   hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <json_without_literals.hpp> ${standard}
-    LIBRARIES Eigen3::Eigen hapticd_precompiled_json ROOMS
-    hapticd_capture hapticd_conformance hapticd_diagnostics_check hapticd_diagnostics_device hapticd_diagnostics_hand hapticd_diagnostics_machine hapticd_diagnostics_reading hapticd_diagnostics_scene hapticd_document hapticd_export
-    hapticd_importing hapticd_mesh_import hapticd_model_file hapticd_part hapticd_record hapticd_messages hapticd_replay hapticd_requests hapticd_run hapticd_scene hapticd_tune hapticd_view_parts
-    hapticd_world hapticd_client_objects hapticd_control hapticd_haply_parts hapticd_hd)
+    LIBRARIES Eigen3::Eigen hapticd_precompiled_json)
   hapticd_no_deadline(hapticd_headers_no_deadline)
+  foreach(room
+    hapticd_arm hapticd_base hapticd_brep_contact hapticd_brep_elements hapticd_brep_geometry hapticd_brep_model
+    hapticd_brep_search hapticd_brep_tree hapticd_capture hapticd_client_objects hapticd_codec hapticd_conformance
+    hapticd_contact hapticd_control hapticd_core hapticd_diagnostics_check hapticd_diagnostics_device
+    hapticd_diagnostics_hand hapticd_diagnostics_machine hapticd_diagnostics_reading hapticd_diagnostics_scene
+    hapticd_document hapticd_dynamics hapticd_export hapticd_haply_parts hapticd_hd hapticd_host hapticd_importing
+    hapticd_kinematics hapticd_loop hapticd_medial hapticd_mesh_import hapticd_messages hapticd_model_file
+    hapticd_part hapticd_passivity hapticd_record hapticd_replay hapticd_requests hapticd_run hapticd_safety
+    hapticd_scene hapticd_sim hapticd_simulated hapticd_spline hapticd_status hapticd_telemetry hapticd_trace
+    hapticd_traced_shape hapticd_tune hapticd_velocity hapticd_view_parts hapticd_watch hapticd_wire_arm
+    hapticd_world mat_deformable_objects nurbs_rigid_objects pendulum_objects push_button_objects simulated_objects
+    usb_bulk_objects usb_hid_objects vendor_dhd_objects vendor_hd_objects vme_objects)
+    if(NOT TARGET ${room})
+      continue()
+    endif()
+    get_target_property(no_deadline ${room} HAPTICD_NO_DEADLINE)
+    if(no_deadline)
+      hapticd_use_precompiled(${room} hapticd_headers_no_deadline Eigen3::Eigen hapticd_precompiled_json)
+    else()
+      hapticd_use_precompiled(${room} hapticd_headers Eigen3::Eigen)
+    endif()
+  endforeach()
 endif()
