@@ -20,7 +20,6 @@
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "session/messages/setup_watch.hpp"
-#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -225,10 +224,7 @@ void addExplain(const Command& app, int& exit_code) {
   command.footer(
       "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5    # what happened in "
       "a run that was recorded");
-  command.callback([options, &exit_code] {
-    exit_code = explain(*options);
-    watch::guardTheEnd({});  // a destructor of a plugin may crash
-  });
+  setGuardedCallback(command, exit_code, [options] { return explain(*options); });
 }
 
 }  // namespace hapticd::cli

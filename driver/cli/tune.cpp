@@ -21,7 +21,6 @@
 #include "session/messages/setup_watch.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
-#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -267,10 +266,7 @@ void addTune(const Command& app, int& exit_code) {
       "measurement\nand keeps the results so far; a second one ends the command at once. The exit code is 1 if no "
       "setting reaches the goal.\n\nExample:\n  "
       "hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
-  command.callback([options, &exit_code] {
-    exit_code = tuneScene(*options);
-    watch::guardTheEnd({});  // a destructor of a plugin may crash
-  });
+  setGuardedCallback(command, exit_code, [options] { return tuneScene(*options); });
 }
 
 }  // namespace hapticd::cli

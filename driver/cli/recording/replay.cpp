@@ -21,7 +21,6 @@
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
-#include "watch/crash.hpp"
 #include "world/instructions.hpp"
 
 namespace hapticd::cli {
@@ -245,10 +244,7 @@ void addReplay(const Command& app, int& exit_code) {
       "the same\nas far as the run could be replayed: a replay ends where a model was added that cannot be built, or "
       "where the file is damaged.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
-  command.callback([options, &exit_code] {
-    exit_code = replay(*options);
-    watch::guardTheEnd({});  // a destructor of a plugin may crash
-  });
+  setGuardedCallback(command, exit_code, [options] { return replay(*options); });
 }
 
 }  // namespace hapticd::cli

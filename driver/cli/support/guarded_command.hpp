@@ -3,9 +3,11 @@
 /// the scene that asks for it.
 #pragma once
 #include <filesystem>
+#include <utility>
 
 #include "base/code_owner.hpp"
 #include "base/os.hpp"
+#include "cli/support/command.hpp"
 #include "watch/crash.hpp"
 #include "watch/idle_target.hpp"
 
@@ -22,5 +24,15 @@ class GuardedCommand {
   watch::IdleTarget none_;
   watch::CrashGuard guard_;
 };
+
+/// [main] Makes `work`, a function that returns an exit code, what a command does. A crash after it is watched until
+/// the process ends, because a destructor of a plugin may crash.
+template <class Work>
+void setGuardedCallback(const Command& command, int& exit_code, Work work) {
+  command.callback([&exit_code, work = std::move(work)] {
+    exit_code = work();
+    watch::guardTheEnd({});
+  });
+}
 
 }  // namespace hapticd::cli

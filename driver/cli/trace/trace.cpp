@@ -19,7 +19,6 @@
 #include "servo/velocity/probe_velocity.hpp"
 #include "session/messages/setup_watch.hpp"
 #include "session/messages/silence_reason.hpp"
-#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -167,10 +166,7 @@ void addTrace(const Command& app, int& exit_code) {
       "without limits: limits belong to a "
       "device, and a trace has none.\nThe columns of the foot point are nan while nothing of the model is "
       "traced.\n\nExample:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
-  command.callback([options, &exit_code] {
-    exit_code = trace(*options);
-    watch::guardTheEnd({});  // a destructor of a plugin may crash
-  });
+  setGuardedCallback(command, exit_code, [options] { return trace(*options); });
 }
 
 }  // namespace hapticd::cli
