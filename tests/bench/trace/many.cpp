@@ -74,7 +74,7 @@ void printMany() {
   std::printf("\n## Several active surfaces [ns a tick / ns a surface / ns a further surface]\n\n");
   std::printf(
       "A surface is evaluated only in ticks in which it could hold the nearest foot: distances change by at most the\n"
-      "way of the probe, and a box bounds them. Sheets %.1f mm apart are the worst case: many could, in every "
+      "path of the probe, and a box bounds them. Sheets %.1f mm apart are the worst case: many could, in every "
       "tick.\n\n",
       0.1);
   std::printf("| active | sheets 0.1 mm apart | sheets 10 mm apart | tiles of 20 mm |\n|---|---|---|---|\n");
