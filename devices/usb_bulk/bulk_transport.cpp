@@ -204,7 +204,7 @@ class BulkTransport final : public Transport {
            "it in again; hapticd doctor says what is missing";
   }
 
-  /// Tells whether the descriptors of the device describe this endpoint as an interrupt endpoint.
+  /// Returns whether the descriptors of the device describe this endpoint as an interrupt endpoint.
   bool isInterrupt(uint8_t endpoint) {
     libusb_config_descriptor* config = nullptr;
     bool interrupt = false;

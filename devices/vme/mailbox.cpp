@@ -12,7 +12,7 @@ namespace {
 using wire_arm::Status;
 constexpr int kTries = 3;  ///< attempts to read a block while the board writes it
 
-/// Tells whether all bytes are 0xff. This happens if no board answers: all lines of the bus stay high, and vme_user
+/// Returns whether all bytes are 0xff. This happens if no board answers: all lines of the bus stay high, and vme_user
 /// reports no error.
 bool nobody(std::span<const uint8_t> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });

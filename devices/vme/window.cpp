@@ -23,7 +23,7 @@ std::string hex(uint64_t number) {
 
 constexpr const char* kFolder = "/dev/bus/vme/";
 
-/// Tells whether a device node is one of the four windows to the bus that vme_user has.
+/// Returns whether a device node is one of the four windows to the bus that vme_user has.
 bool isMaster(const std::string& node) {
   const std::string name = node.substr(std::strlen(kFolder));
   return name.size() == 2 && name[0] == 'm' && name[1] >= '0' && name[1] <= '3';

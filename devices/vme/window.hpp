@@ -35,7 +35,7 @@ class Window {
   Result<void> open(const Place& place);
   void close() noexcept;
   bool isOpen() const noexcept { return fd_ >= 0; }
-  /// Tells whether a plain file is used instead of a bus.
+  /// Returns whether a plain file is used instead of a bus.
   bool isFile() const noexcept { return file_; }
 
   /// Returns the number of transferred bytes, which is smaller than wanted at the end of the window, 0 if no window is

@@ -65,7 +65,7 @@ class WorkerScope {
 /// [any] Returns the owner of the code that this worker runs now; nullptr if it is the daemon's own code, or if no
 /// thread is this worker. Async-signal-safe.
 const Owner* ownerOfWorker(Worker worker) noexcept;
-/// [any] Tells whether the calling thread is one of the workers above. Async-signal-safe.
+/// [any] Returns whether the calling thread is one of the workers above. Async-signal-safe.
 bool isWorker() noexcept;
 
 /// [main] Notes that the code from `begin` up to `end` belongs to one library. setCodeOwner() names its owner later; if

@@ -82,7 +82,7 @@ size_t residentBytes();
 /// Returns one line for messages with what affects the right to run in real time: limits, capabilities, cgroup.
 std::string realTimeRights();
 
-/// Tells whether the program runs in a virtual machine. In a virtual machine, the host may pause the processors, and
+/// Returns whether the program runs in a virtual machine. In a virtual machine, the host may pause the processors, and
 /// busy waiting does not prevent this.
 bool inVirtualMachine();
 

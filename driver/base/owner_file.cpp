@@ -18,7 +18,7 @@ struct FileOfOwner {
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
 
-/// Tells whether a later entry of the same module replaces this entry.
+/// Returns whether a later entry of the same module replaces this entry.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
     if (later->file.foreign && later->owner->module == entry->owner->module) return true;

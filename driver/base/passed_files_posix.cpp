@@ -24,7 +24,7 @@ constexpr long kFuse = 0x65735546, kProc = 0x9fa0, kSys = 0x62656572;
 
 thread_local const PassedFiles* in_force = nullptr;
 
-/// Tells whether a program or the kernel decides at each read what the reader gets.
+/// Returns whether a program or the kernel decides at each read what the reader gets.
 bool answersReaders(int fd) {
   struct statfs where{};
   const long kind = fstatfs(fd, &where) == 0 ? static_cast<long>(where.f_type) : kFuse;

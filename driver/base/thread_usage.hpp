@@ -20,7 +20,7 @@ uint64_t cpuTime(CpuClock clock) noexcept;
 /// [rt] Returns the CPU time [ns] that the calling thread has used.
 uint64_t cpuTimeOfThread() noexcept;
 
-/// [any] Tells whether the kernel took the processor from the calling thread since its last call of this function. It
+/// [any] Returns whether the kernel took the processor from the calling thread since its last call of this function. It
 /// makes a system call.
 bool wasPreempted() noexcept;
 

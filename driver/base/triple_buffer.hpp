@@ -19,7 +19,7 @@ class TripleBuffer {
   /// [rt] Makes the back slot the newest value.
   void publish() noexcept HSP_RT { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-  /// [rt] Tells whether a new value has come since the last call. If so, front() returns the new value from now on.
+  /// [rt] Returns whether a new value has come since the last call. If so, front() returns the new value from now on.
   bool update() noexcept HSP_RT {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;

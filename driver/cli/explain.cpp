@@ -178,7 +178,7 @@ int explain(const ExplainArguments& options) {
   if (isRecording(options.scene)) {
     if (options.cost || options.json || !options.device.empty())
       return fail(kBadInput, options.scene +
-                                 ": is a recording, which is told in words alone, so --cost, --json and "
+                                 ": is a recording, which is explained in words alone, so --cost, --json and "
                                  "--device do not apply; for numbers, run: hapticd export " +
                                  options.scene + " --csv FOLDER");
     return explainRecording(options.scene);

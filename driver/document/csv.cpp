@@ -110,7 +110,7 @@ class Parser {
     const std::vector<Field> fields = fieldsOf(text, separator_);
     if (wrong_ == 0 || table_.columns > 0) row(fields);
   }
-  /// Tells the number of the column that has the times, if the table has no header and its columns are in another
+  /// Names the column that has the times, if the table has no header and its columns are in another
   /// order.
   void putFirst(size_t column) { first_ = column; }
   bool tooWrong() const { return wrong_ >= kShownProblems; }
@@ -241,7 +241,7 @@ class Parser {
   /// Adds the number to the table, or notes why it is none.
   bool take(const Field& field, size_t column) {
     std::string text(field.text);
-    if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');  // told with the header
+    if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');  // reported with the header
     const std::optional<double> value = numberIn(text);
     const bool finite = rules_.finite || (rules_.growing && column == 0);
     const bool good = value && (finite ? std::isfinite(*value) && std::abs(*value) <= rules_.largest : true);

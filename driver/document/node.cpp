@@ -25,7 +25,7 @@ void appendJsonText(const std::string& text, std::string& out) {
   out += '"';
 }
 
-/// Tells whether a text is a YAML number that JSON writes in the same way.
+/// Returns whether a text is a YAML number that JSON writes in the same way.
 bool jsonNumber(const std::string& text) {
   const std::optional<double> value = toNumber(text);
   if (!value || !std::isfinite(*value)) return false;

@@ -290,7 +290,7 @@ std::optional<Node> parseOn(const std::string& text, const std::string& file, Pr
     Problems found;
     Attempt made = attempt(recovery ? recovery->text() : text, file, found);
     if (made.error && !recovery) recovery.emplace(text, file);
-    if (made.error && recovery->mend(*made.error)) continue;
+    if (made.error && recovery->recover(*made.error)) continue;
     if (recovery) {
       if (made.root) recovery->toFile(*made.root);
       recovery->toFile(found);

@@ -26,7 +26,7 @@ struct Problem {
   std::string key;   ///< such as "models[2].parameters.stiffness"; "" for the file as a whole
   std::string what;  ///< what is wrong, and what was expected
   /// Of a syntax error: the text that was not read because of it, or that may stand in another place than the writer
-  /// meant. Problems that may follow from it are not told (see dropFollowUps()).
+  /// meant. Problems that may follow from it are not reported (see dropFollowUps()).
   std::string left_out{};
   ProblemKind kind = ProblemKind::kValue;
 

@@ -86,14 +86,14 @@ Reached parsedTo(const std::string& text) {
 
 /// Returns the column in the file of a column of the corrected line. Between the parts at both ends of the line that
 /// are equal, it is the first column that differs.
-int columnIn(const std::string& given, const std::string& mended, int column) {
-  const size_t shorter = std::min(given.size(), mended.size());
+int columnIn(const std::string& given, const std::string& repaired, int column) {
+  const size_t shorter = std::min(given.size(), repaired.size());
   size_t head = 0, tail = 0;
-  while (head < shorter && given[head] == mended[head]) ++head;
-  while (tail < shorter - head && given[given.size() - 1 - tail] == mended[mended.size() - 1 - tail]) ++tail;
+  while (head < shorter && given[head] == repaired[head]) ++head;
+  while (tail < shorter - head && given[given.size() - 1 - tail] == repaired[repaired.size() - 1 - tail]) ++tail;
   const auto at = static_cast<size_t>(std::max(column, 1)) - 1;
   if (at < head) return column;
-  if (at >= mended.size() - tail) return column + static_cast<int>(given.size()) - static_cast<int>(mended.size());
+  if (at >= repaired.size() - tail) return column + static_cast<int>(given.size()) - static_cast<int>(repaired.size());
   return static_cast<int>(std::min(at, given.size() - tail)) + 1;
 }
 
@@ -124,12 +124,12 @@ void Recovery::use(Problem problem, const Repair& repair) {
   problem.what += repair.read_as;
   problem.left_out = repair.unread;
   problem.place = inFile(problem.place);
-  // A line that was corrected before was corrected in the wrong way; its second error is none of the writer's.
-  if (std::find(mended_.begin(), mended_.end(), repair.first) == mended_.end())
+  // A line that was corrected before was corrected wrongly; its second error is none of the writer's.
+  if (std::find(repaired_.begin(), repaired_.end(), repair.first) == repaired_.end())
     problems_.push_back(std::move(problem));
   else if (!problems_.empty())
     problems_.back().left_out += " " + problem.left_out;
-  mended_.push_back(repair.first);
+  repaired_.push_back(repair.first);
   lines_ = repair.lines;
   text_ = textOf(lines_);
 }
@@ -171,23 +171,23 @@ std::optional<Repair> Recovery::leftOut(int line, const SyntaxError& error) {
   return alone.lines != lines_ && parsed_ <= kMostParsed ? std::optional(alone) : std::nullopt;
 }
 
-bool Recovery::mend(const SyntaxError& error) {
+bool Recovery::recover(const SyntaxError& error) {
   const std::vector<Problem> likely =
       error.problem ? std::vector{*error.problem} : likelySyntaxErrors(text_, error.place, error.words);
-  const bool may_mend = text_.size() <= kMostBytes && mended_.size() < kMostErrors;
+  const bool may_repair = text_.size() <= kMostBytes && repaired_.size() < kMostErrors;
   const int before = error.place.line - 1;  // a line without a colon is noticed only at the next one
-  if (may_mend && error.place.line >= 1 && error.place.line <= static_cast<int>(lines_.size()))
+  if (may_repair && error.place.line >= 1 && error.place.line <= static_cast<int>(lines_.size()))
     if (const auto dash = farthest(withDash(lines_, error.place.line), error, error.place.line))
       return use(likely.front(), *dash), true;
   for (const Problem& one : likely) {
-    if (!may_mend) break;
+    if (!may_repair) break;
     if (&one == &likely.back() && before >= 1)
       if (const auto repair = farthest(corrections(lines_, {file_, before, 1}), error, error.place.line))
         return use(one, *repair), true;
     if (const auto repair = corrected(one.place, error)) return use(one, *repair), true;
   }
   for (const Problem& one : likely)
-    if (const auto repair = may_mend ? leftOut(one.place.line, error) : std::nullopt) return use(one, *repair), true;
+    if (const auto repair = may_repair ? leftOut(one.place.line, error) : std::nullopt) return use(one, *repair), true;
   problems_.push_back(likely.front());
   problems_.back().place = inFile(likely.front().place);
   return false;

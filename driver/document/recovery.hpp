@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads on after a syntax error, so that one check tells all problems of a file. What is read in this way is never
+/// Reads on after a syntax error, so that one check reports all problems of a file. What is read so is never
 /// used for a run, because the file has problems.
 #pragma once
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace hapticd::document {
 
-/// A syntax error as the parser tells it.
+/// A syntax error as the parser reports it.
 struct SyntaxError {
   Place place;
   std::string words;               ///< the parser's message
@@ -25,7 +25,7 @@ class Recovery {
   const std::string& text() const { return text_; }  ///< as far as it is corrected
   /// Corrects the text, or leaves out a part of it, and keeps a problem that says what is wrong and how it is read on.
   /// Returns false if nothing helps; the problem is kept all the same.
-  bool mend(const SyntaxError& error);
+  bool recover(const SyntaxError& error);
   /// Moves places of the corrected text to where they are in the file.
   void toFile(Problems& problems) const;
   void toFile(Node& node) const;
@@ -41,8 +41,8 @@ class Recovery {
   std::string file_, text_;
   Lines given_, lines_;
   Problems problems_;
-  std::vector<int> mended_;  ///< lines that were corrected
-  size_t parsed_ = 0;        ///< bytes that were parsed to find corrections
+  std::vector<int> repaired_;  ///< lines that were corrected
+  size_t parsed_ = 0;          ///< bytes that were parsed to find corrections
 };
 
 }  // namespace hapticd::document

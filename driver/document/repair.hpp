@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Corrects a line of a text that is not YAML in the ways that its writer probably meant, or leaves it out, so that the
+/// Corrects a line of a text that is not YAML to what its writer may have meant, or leaves it out, so that the
 /// rest of the file can be read.
 #pragma once
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace hapticd::document {
 
-/// One way to read on after a syntax error.
+/// One method to read on after a syntax error.
 struct Repair {
-  Lines lines;          ///< the whole text with the correction; a line that is left out is empty
-  int first = 0;        ///< line that was corrected, counted from 1
-  std::string what;     ///< what is wrong with the line, if this way shows it better than the parser's message; or ""
+  Lines lines;       ///< the whole text with the correction; a line that is left out is empty
+  int first = 0;     ///< line that was corrected, counted from 1
+  std::string what;  ///< what is wrong with the line, if this method shows it better than the parser's message; or ""
   std::string read_as;  ///< end of the message that says how the file was read on; "" if the correction is certain
   std::string unread;   ///< text whose place or value is a guess, so that other problems may follow from it
   int column = 1;       ///< column of the mistake, if `what` is given

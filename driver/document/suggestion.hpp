@@ -8,7 +8,7 @@
 namespace hapticd::document {
 
 /// [any] Returns a text such as " (did you mean \"stiffness\"?)" for a key or a word of a document, or "" if no
-/// candidate is near. Slips of writing that make odd keys are told, too, such as a decimal comma.
+/// candidate is near. Slips of writing that make odd keys are named, too, such as a decimal comma.
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
 
 /// [any] Returns the same for a name that was not part of a document, such as a word of a command.

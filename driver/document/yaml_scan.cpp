@@ -43,8 +43,8 @@ class Scanner {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// Tells whether the line that ends here has | or > at its end (perhaps with options after it), so that a block text
-  /// begins.
+  /// Returns whether the line that ends here has | or > at its end (perhaps with options after it), so that a block
+  /// text begins.
   bool opensBlock() const {
     size_t end = at_;
     while (end > line_start_ && (isBlank(text_[end - 1]) || text_[end - 1] == '-' || text_[end - 1] == '+' ||

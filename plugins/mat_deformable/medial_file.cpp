@@ -244,7 +244,7 @@ class Reader {
     return false;
   }
 
-  /// Returns true if the file has a key that resembles this one. It was told as unknown.
+  /// Returns true if the file has a key that resembles this one. It was reported as unknown.
   static bool isMisspelt(const Json& medial, const std::string& key) {
     for (const auto& [name, value] : medial.items())
       if (name != key && !document::suggestion(name, {key}).empty()) return true;

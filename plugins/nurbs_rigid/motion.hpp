@@ -46,10 +46,10 @@ struct MotionParameters {
                 "torsion spring that turns a hinge to `rest`; 0: no spring"),
         F::real("rest", &MotionParameters::rest_, "rad or m", -1e3, 1e3, 0,
                 "where the spring of the joint is relaxed, from the initial pose: angle of a hinge with angular_tether "
-                "[rad], by the right-hand rule about axis; way of a slider with tether [m], along axis"),
+                "[rad], by the right-hand rule about axis; travel of a slider with tether [m], along axis"),
         F::array("limits", &MotionParameters::limits_, "rad or m", 2, 0, 2, -1e3, 1e3, "[]",
                  "[lowest, highest]: end stops of the joint, from the initial pose, which is 0: angles of a hinge "
-                 "[rad], ways of a slider [m]; []: no stops")};
+                 "[rad], travels of a slider [m]; []: no stops")};
   }
   static constexpr const char* kJointNames[] = {"free", "hinge", "slider"};
 

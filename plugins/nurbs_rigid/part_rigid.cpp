@@ -64,7 +64,7 @@ double roundedUp(double number) {
 /// Warns of walls that a firm press goes through. The hand still feels the wall, because the contact is held. But the
 /// tip is drawn on the other side, where it may be in front of another face. A ball is pressed by its radius before its
 /// centre, the tip, is at the wall. Walls so thin that no arm renders a sufficient stiffness are only noted for
-/// `hapticd explain`: most parts have such a place, and nobody can mend it.
+/// `hapticd explain`: most parts have such a place, and nobody can fix it.
 void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
   // [N] firm press of an exploring finger tip [assumption]; the arm's limit is for short moments
   constexpr double kFirmPress = 2;

@@ -13,7 +13,7 @@ namespace hapticd {
 /// one, if there is a sign that this one is mistyped: the same side has more control points that agree; or only one
 /// coordinate differs, by a power of ten; or with the neighbour's corner the surface becomes a parallelogram. Sides
 /// that are free on purpose show none of these signs.
-/// @return the pairs of surfaces that were told, the smaller index first
+/// @return the pairs of surfaces that were reported, the smaller index first
 std::set<std::pair<std::size_t, std::size_t>> warnOfCornerSlips(const ModelFile& file, Problems& odd);
 
 }  // namespace hapticd

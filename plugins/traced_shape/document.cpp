@@ -21,7 +21,7 @@ constexpr std::size_t kMostProblems = 20;
 // own size.
 constexpr std::size_t kMostYaml = 2u << 20, kMostJson = 32u << 20;
 
-constexpr const char* kPartWay = "hapticd import";
+constexpr const char* kImport = "hapticd import";
 
 [[noreturn]] void throwAll(const document::Problems& problems, std::vector<std::string> odd = {}) {
   std::string all;
@@ -179,12 +179,12 @@ std::string readModelText(const std::string& path) {
   if (text) return *std::move(text);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  // A large file of another kind cannot be mended by making it smaller.
+  // To make a large file of another kind smaller would not help.
   if (const std::string foreign = document::foreignFile("", path); !error && size > kMostJson && !foreign.empty())
     throwOne(path, foreign);
   throwOne(path, problems.front().what +
                      "; expected a model file (format hapticd-model/1) of at most 32 MiB, or a part (.hpart), which " +
-                     "may be larger: " + kPartWay);
+                     "may be larger: " + kImport);
 }
 
 Json parseDocument(const std::string& text, const std::string& file, Problems& problems) {
@@ -196,7 +196,7 @@ Json parseDocument(const std::string& text, const std::string& file, Problems& p
     throwOne(
         file,
         std::string("is larger than 2 MiB, the most for YAML; write it as JSON (up to 32 MiB), or make a part file: ") +
-            kPartWay);
+            kImport);
   document::Problems of_text;
   const auto root = document::readOn(text, file, of_text);
   if (!root) throwAll(of_text);

@@ -31,7 +31,7 @@ class DynamicBody {
 
   void release() noexcept HSP_RT { presses_.release(); }  ///< [rt] forgets the contacts
 
-  /// [rt] Returns the flags of every contact of the shape (HSP_OUT_*) that tell at which end of its range the joint is.
+  /// [rt] Returns the flags of every contact of the shape (HSP_OUT_*) that say at which end of its range the joint is.
   uint32_t endFlags() const noexcept HSP_RT;
   const dynamics::RigidBody& body() const noexcept { return body_; }
 

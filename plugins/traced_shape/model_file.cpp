@@ -33,7 +33,7 @@ class Reader {
  public:
   explicit Reader(Problems& problems) : problems_(problems) {}
 
-  /// Tells of each surface whether its degrees, knots and points are right. Its weights are empty if they are wrong.
+  /// Reports of each surface whether its degrees, knots and points are right. Its weights are empty if they are wrong.
   const std::vector<bool>& sound() const { return sound_; }
 
   ModelFile read(const Json& root) {
@@ -231,7 +231,7 @@ class Reader {
     return std::nullopt;
   }
 
-  /// Returns the value of a key, or of a misspelt one, which was told as unknown; nullptr if there is none.
+  /// Returns the value of a key, or of a misspelt one, which was reported as unknown; nullptr if there is none.
   static const Json* member(const Json& json, const char* key) {
     static const std::set<std::string> kKeys{"name",    "degree",  "knots", "points",
                                              "weights", "outward", "sides", "flipped"};
@@ -301,7 +301,7 @@ static std::vector<std::string> oddOf(const ModelFile& file, const std::vector<b
     const std::vector<std::string> turned = warnOfJoints(file, model, text, name);
     odd.insert(odd.end(), turned.begin(), turned.end());
   } catch (const std::exception&) {
-    return odd;  // what cannot be joined is told once the other problems are corrected
+    return odd;  // what cannot be joined is reported once the other problems are corrected
   }
   return odd;
 }

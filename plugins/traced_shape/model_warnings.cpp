@@ -173,7 +173,7 @@ void warnOfSpikes(const SurfaceData& surface, std::size_t index, Problems& odd) 
 /// the same. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
 class Gaps {
  public:
-  /// @param known pairs of surfaces whose gap is told already
+  /// @param known pairs of surfaces whose gap is reported already
   Gaps(const trace::Model& model, const ModelFile& file, std::set<std::pair<std::size_t, std::size_t>> known,
        Problems& odd)
       : model_(model), file_(file), odd_(odd), known_(std::move(known)) {

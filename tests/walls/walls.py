@@ -52,7 +52,7 @@ ONE_PLACE = {"CLI/": "driver/command_line/command_line.cpp", "spdlog/": "driver/
 
 
 def finds(command, header):
-    """Tells whether a file with this one include has all its headers, and what the compiler said. The preprocessor alone tells.
+    """Returns whether a file with this one include has all its headers, and what the compiler said. The preprocessor alone tells.
 
     A header that is installed in /usr/local is found from everywhere, so it does not count."""
     run = subprocess.run(command + ["-E", "-H", "-o", "/dev/null", "-x", "c++", "-"], input=f'#include "{header}"\n',

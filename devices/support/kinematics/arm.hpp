@@ -66,7 +66,7 @@ class Arm {
   /// for the user if a row is missing or in the wrong order; does not check that the new limits are narrower.
   void narrow(const JointLimits& limits);
 
-  /// [any] Tells whether q is within the limits, including limits that couple several joints.
+  /// [any] Returns whether q is within the limits, including limits that couple several joints.
   virtual bool allowed(const JointVector& q) const noexcept;
 
  protected:

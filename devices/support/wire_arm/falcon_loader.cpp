@@ -92,7 +92,7 @@ class Loader {
   const std::vector<uint8_t>& firmware_;
 };
 
-/// Tells whether firmware runs in the Falcon: it then answers commands with reports.
+/// Returns whether firmware runs in the Falcon: it then answers commands with reports.
 bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
   std::array<uint8_t, codec::kMaxReportBytes> command{}, got{};
   const size_t bytes = codec::encode(wire.output, codec::Order{}, command);

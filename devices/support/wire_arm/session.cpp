@@ -126,14 +126,14 @@ void Session::recover(Nanoseconds now) noexcept {
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
 }
 
-/// Tells whether the arm sent the same report again: its counter is the same or, without a counter, its clock has not
+/// Returns whether the arm sent the same report again: its counter is the same or, without a counter, its clock has not
 /// advanced.
 bool Session::again() const noexcept {
   if (state_.has_sequence) return state_.sequence == last_sequence_;
   return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
 }
 
-/// Tells whether the board has restarted. If so, forgets the positions and the calibration, because the board now
+/// Returns whether the board has restarted. If so, forgets the positions and the calibration, because the board now
 /// counts from another position.
 bool Session::startedAnew(Nanoseconds now) noexcept {
   const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;

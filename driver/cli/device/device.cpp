@@ -52,7 +52,7 @@ void printBuses() {
     if (!device.module.empty() && !device.may_open)
       std::printf(
           "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug the device in "
-          "again; hapticd doctor tells more\n",
+          "again; hapticd doctor says more\n",
           device.node.c_str());
   }
   if (found.empty()) std::printf("  no known haptic device (USB and VME scanned)\n");
@@ -140,14 +140,14 @@ void printJoints(const host::DeviceInstance& device) {
   const hdv_info& info = device.info();
   for (uint32_t i = 0; i < info.joint_count; ++i) {
     const bool sliding = slides(device, i);
-    const char *way = sliding ? "m" : "rad", *push = sliding ? "N" : "N m";
+    const char *position = sliding ? "m" : "rad", *force = sliding ? "N" : "N m";
     std::printf("  joint %u: ", i + 1);
     if (info.position_min[i] == 0 && info.position_max[i] == 0)
       std::printf("range unknown, ");
     else
-      std::printf("%g to %g %s, ", info.position_min[i], info.position_max[i], way);
+      std::printf("%g to %g %s, ", info.position_min[i], info.position_max[i], position);
     if (info.max_torque[i] > 0)
-      std::printf("its motor up to %g %s\n", info.max_torque[i], push);
+      std::printf("its motor up to %g %s\n", info.max_torque[i], force);
     else
       std::printf("no bound of its motor is known\n");
   }

@@ -9,7 +9,7 @@
 
 namespace hapticd::cli {
 
-/// [main] Returns the problems of a device file that `hapticd check` tells, also those that only its module can find.
+/// [main] Returns the problems of a device file that `hapticd check` reports, also those that only its module can find.
 /// Touches no hardware.
 document::Problems problemsOfDevice(const std::string& file);
 

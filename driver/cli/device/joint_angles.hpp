@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells joints that slide from those that turn, and angles in degrees from those in rad.
+/// Distinguishes joints that slide from those that turn, and angles in degrees from those in rad.
 #pragma once
 #include <cstdint>
 #include <string>

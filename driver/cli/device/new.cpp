@@ -106,7 +106,8 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   printProblems(problems, stderr);
   const std::string name = file.string();
   if (!problems.empty())
-    return fail(kFailed, name + " is written, but cannot be used yet\n  fix: mend these problems, then hapticd check " +
+    return fail(kFailed, name +
+                             " is written, but cannot be used yet\n  fix: correct these problems, then hapticd check " +
                              name + "; to begin anew with other options: rm " + name);
   printNextSteps(draft, name);
   return kWorked;

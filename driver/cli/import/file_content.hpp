@@ -6,7 +6,7 @@
 namespace hapticd::cli {
 
 /// [main] Returns what is wrong if the first bytes of a file are those of another kind of file than its name says, with
-/// the way to mend it; "" if they agree, or if the bytes say nothing. The text begins with the file's name.
+/// how to fix it; "" if they agree, or if the bytes say nothing. The text begins with the file's name.
 std::string misnamed(const std::string& file);
 
 }  // namespace hapticd::cli

@@ -35,7 +35,7 @@ struct ImportArguments {
 };
 
 /// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
-std::string otherWay(const std::string& file) {
+std::string otherCommand(const std::string& file) {
   const std::string ending = endingOf(file);
   const auto is = [&](std::initializer_list<const char*> endings) {
     return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
@@ -138,7 +138,7 @@ int importModel(const ImportArguments& options) {
   if (part)
     return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
                                options.file + "); hapticd part info shows what it holds");
-  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
+  if (const std::string better = otherCommand(options.file); !better.empty()) return fail(kBadInput, better);
   if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
   if (std::error_code error; !std::filesystem::exists(options.file, error))
     return fail(kBadInput, options.file + ": there is no such file");

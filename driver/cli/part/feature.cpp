@@ -87,8 +87,8 @@ struct Axis {
   }
 };
 
-/// Returns the axis of a round face, nothing for other faces. @param near [m] the axis is told at its point nearest to
-/// this
+/// Returns the axis of a round face, nothing for other faces. @param near [m] the axis is described at its point
+/// nearest to this
 std::optional<Axis> axisOf(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
   const bool round = surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone ||
                      surface.kind == SurfaceKind::kTorus || surface.kind == SurfaceKind::kRevolution;

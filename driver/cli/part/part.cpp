@@ -110,7 +110,7 @@ Json describe(const Part& part, std::size_t bytes) {
           {"warnings", part.warnings}};
 }
 
-/// Adds the box of each body in its place: names alone seldom tell which part of an assembly is which.
+/// Adds the box of each body in its place: names alone seldom show which part of an assembly is which.
 void addPlaces(Json& info, const brep::Model& model) {
   for (std::uint32_t i = 0; i < model.placements().size(); ++i) {
     const Eigen::AlignedBox3d box = brep::tightBounds(model, i);
@@ -246,7 +246,7 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
   const std::string name = brep::featureName(part, feature);
   if (name.empty())
     return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
-                               " tells which features each instance has");
+                               " says which features each instance has");
   std::printf("%s\n", name.c_str());
   try {
     std::printf("  %s\n", featureText(part, feature).c_str());

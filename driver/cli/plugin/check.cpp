@@ -185,7 +185,7 @@ size_t notActive(const Recipe& recipe, const std::string& why, const Conformance
   print(outcomes.back());
   const bool crashed = endedBeforeSteps();
   std::printf("the other tests were not run: %s\n",
-              crashed ? "first mend this" : "give it parameters that it accepts with --set ID=VALUE");
+              crashed ? "first fix this" : "give it parameters that it accepts with --set ID=VALUE");
   return left;
 }
 
@@ -278,7 +278,7 @@ size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std:
       std::printf("stopped at the first hang: %zu tests were not run; if the plugin is only slow: --timeout SECONDS\n",
                   left);
     if (lacking.notRun() > 0)
-      std::printf("%zu other %s not run: first mend %s\n", lacking.notRun(),
+      std::printf("%zu other %s not run: first fix %s\n", lacking.notRun(),
                   lacking.notRun() == 1 ? "test was" : "tests were", lacking.cause().c_str());
   }
   if (options.fuzz > 0 && left + lacking.notRun() == 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells a plugin's file from what people give in its place: a folder, the name of a plugin, a scene.
+/// Distinguishes a plugin's file from what people give in its place: a folder, the name of a plugin, a scene.
 #pragma once
 #include <string>
 

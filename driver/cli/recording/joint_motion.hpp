@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Where the hinges and sliders of a recording's models were in each tick. The rows hold poses; these are angles and
-/// ways.
+/// travels.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

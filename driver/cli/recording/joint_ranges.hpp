@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells how far the joints of a recording's models moved, and when they stood at their end stops.
+/// Says how far the joints of a recording's models moved, and when they stood at their end stops.
 #pragma once
 #include <string>
 #include <vector>

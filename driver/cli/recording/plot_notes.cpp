@@ -76,7 +76,7 @@ void noteJoints(const record::Recording& recording, const servo::RunModels& mode
     const double t = times.of(tick), unit = joint.turns() ? 1 : 1e3;
     if (!(t >= from && t <= to)) return;
     record::JointTrack& track = tracks[model];
-    track.title = (joint.turns() ? "angle of " : "way of ") + models.all()[model].model.name;
+    track.title = (joint.turns() ? "angle of " : "travel of ") + models.all()[model].model.name;
     track.unit = joint.turns() ? "rad" : "mm";
     track.places.emplace_back(t, place.position * unit);
     const double stop = place.stop != 0 ? joint.limit(place.stop) * unit : 0;

@@ -49,7 +49,7 @@ class Names {
   const servo::RunModels& models_;
 };
 
-/// Returns "" for an order that is not told.
+/// Returns "" for an order that is not listed.
 std::string words(const Row& row, const Names& names) {
   const bool force = row.param == static_cast<uint32_t>(Order::Led::kForce);
   switch (row.kind) {

@@ -11,7 +11,7 @@
 namespace hapticd::cli {
 
 /// [main] Returns a line for each order, such as "2.0010 s  enable soft" or "0.1500 s  a program pushes on arm". Leads
-/// of models and hands, and models that came or left, are left out, because the events tell them; so are decisions of
+/// of models and hands, and models that came or left, are left out, because the events have them; so are decisions of
 /// the servo itself. @param models those of this recording
 std::vector<std::string> recordedOrders(const record::Recording& recording, const servo::RecordedRun& run,
                                         const servo::RunModels& models);

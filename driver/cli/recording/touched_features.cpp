@@ -26,7 +26,7 @@ struct Touched {
   std::uint64_t forceless = 0;  ///< ticks in which the model gave no force, because it was faded out
 };
 
-/// Tells whether an arm had a fault in a tick: then no force pushed back, so it is no contact, as in the report of a
+/// Returns whether an arm had a fault in a tick: then no force pushed back, so it is no contact, as in the report of a
 /// run. Ticks are asked for in their order.
 class Faults {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells which faces of each model were touched in a recording.
+/// Says which faces of each model were touched in a recording.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells the file of a plugin or module from other files.
+/// Distinguishes the file of a plugin or module from other files.
 #pragma once
 #include <fstream>
 #include <string>

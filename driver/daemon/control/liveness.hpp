@@ -33,7 +33,7 @@ std::string othersText(const std::string& socket);
 /// [any] Returns the command that starts a daemon with this socket, such as "hapticd run SCENE --name left".
 std::string startText(const std::string& socket);
 
-/// [main] Returns an error for the user: no daemon has this socket, which daemons run, and how to mend it.
+/// [main] Returns an error for the user: no daemon has this socket, which daemons run, and how to fix it.
 std::string noDaemonText(const std::string& socket);
 
 }  // namespace hapticd::control

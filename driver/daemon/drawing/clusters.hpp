@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Groups of places that a coarser drawing joins to one: those in the same cube of a grid whose surface looks the same
-/// way. (Vertex clustering: Rossignac and Borrel, Multi-resolution 3D approximations, 1993. The direction keeps the two
-/// sides of a thin wall apart.)
+/// Groups of places that a coarser drawing joins to one: those in the same cube of a grid whose surface faces the same
+/// direction. (Vertex clustering: Rossignac and Borrel, Multi-resolution 3D approximations, 1993. The direction keeps
+/// the two sides of a thin wall apart.)
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells a parent process which function of a device module its child is calling. After a crash of the child, this is
+/// Shows a parent process which function of a device module its child is calling. After a crash of the child, this is
 /// the only way to find out which function crashed.
 #pragma once
 #include "host/child.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Calls the four kinematic functions of a module in such a way that a check can find out which of them crashed, hung,
+/// Calls the four kinematic functions of a module so that a check can find out which of them crashed, hung,
 /// or wrote beyond the memory for its results.
 #pragma once
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ namespace hapticd::host {
 using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 
 /// Memory for `Most` numbers, of which a module may write the first `used`. All others contain kMark, and overrun()
-/// tells whether the module overwrote one of them.
+/// finds whether the module overwrote one of them.
 template <size_t Most>
 class GuardedArray {
  public:

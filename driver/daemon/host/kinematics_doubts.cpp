@@ -53,7 +53,7 @@ class InverseCheck {
     Tip tip;
     if (calls_.forward(back, tip) >= 0 && !((tip.position - far).norm() <= 1)) keep("says HSP_OK for " + metres(far));
   }
-  /// Returns what is wrong: first what a user notices, then the function that the author of the module must mend.
+  /// Returns what is wrong: first what a user notices, then the function that the author of the module must fix.
   std::string said() const {
     if (wrong_.empty() && (asked_ == 0 || refused_ < asked_)) return "";
     const std::string effect =
@@ -215,12 +215,12 @@ std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_d
   Joints least = Joints::Constant(HUGE_VAL);
   for (int i = 0; i < kPlaces; ++i) {
     const Joints q = placeBetweenStops(i, info);
-    // The arm may be mounted in any way, so this takes the smallest torque of six mountings.
+    // The arm may be mounted in any orientation, so this takes the smallest torque of six mountings.
     for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
       double lightest = HUGE_VAL;
-      for (int way = 0; way < 6; ++way) {
+      for (int mounting = 0; mounting < 6; ++mounting) {
         Eigen::Vector3d down = Eigen::Vector3d::Zero();
-        down[way / 2] = way % 2 == 0 ? 9.81 : -9.81;
+        down[mounting / 2] = mounting % 2 == 0 ? 9.81 : -9.81;
         KinematicsCalls::JointRoom torque(static_cast<size_t>(calls.joints()));
         if (calls.gravity(q, down, torque) >= 0) lightest = std::min(lightest, std::abs(torque.data()[joint]));
       }

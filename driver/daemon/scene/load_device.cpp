@@ -93,7 +93,7 @@ size_t knownKeys(const Node& node, const std::string& key, const host::ClassInfo
   return count;
 }
 
-/// Tells whether one name is the beginning or the end of the other: hid means usb_hid, and vme_bus means vme.
+/// Returns whether one name is the beginning or the end of the other: hid means usb_hid, and vme_bus means vme.
 bool partOf(const std::string& a, const std::string& b) {
   const std::string &part = a.size() < b.size() ? a : b, &whole = a.size() < b.size() ? b : a;
   return part.size() > 2 && (whole.starts_with(part) || whole.ends_with(part));
@@ -148,7 +148,7 @@ size_t knownOf(const Node& parameters, const host::ClassInfo& info) {
       }));
 }
 
-/// Tells once that the parameters are those of a simulated arm, as in the file of a twin whose module was replaced.
+/// Warns once that the parameters are those of a simulated arm, as in the file of a twin whose module was replaced.
 void tellOfSimulated(const Node& root, const Node& parameters, const host::ClassInfo& info, host::Catalog& catalog,
                      Reader& in) {
   const Node* module = root.find("module");
@@ -234,7 +234,7 @@ std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const Device
   return device;
 }
 
-/// Tells a scene that it names a file of another kind as its device. The mistake is in the scene, not in that file.
+/// Reports that a scene names a file of another kind as its device. The mistake is in the scene, not in that file.
 static bool refuseOtherKind(const Node& root, const DeviceReference& reference, Reader& scene_in) {
   const Format* format = formatOf(root);
   const bool model = root.isMap() && format == nullptr && root.find("format") != nullptr;

@@ -165,7 +165,7 @@ class SceneLoader {
                       " does not move its models, so motion cannot be dynamic; expected static or kinematic");
   }
 
-  /// Reads the file of a path, also for a model that does not follow it yet: the mistakes of both are told.
+  /// Reads the file of a path, also for a model that does not follow it yet: the mistakes of both are reported.
   void addPath(const std::string& key, const Node* path, const Node* motion, Model& model) {
     if (path == nullptr) return;  // without a path, a kinematic model rests until a program leads it
     const bool dynamic = motion != nullptr && motion->scalar == "dynamic";

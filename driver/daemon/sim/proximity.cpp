@@ -98,8 +98,8 @@ void Proximity::receiveTransforms() {
 
 void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world, double depth) {
   // A foot point is as far away as the contact is deep. In one period of the search a probe at 2 m/s moves 10 mm.
-  constexpr double kOnTheWay = 0.01;  // [m]
-  const double held = depth > 0 ? depth + kOnTheWay : 0;
+  constexpr double kMovedMeanwhile = 0.01;  // [m]
+  const double held = depth > 0 ? depth + kMovedMeanwhile : 0;
   const double near_by = std::max(settings_.activation_radius, held);
   const double reach = std::max(settings_.activation_radius + settings_.hysteresis, held);
   const Eigen::Vector3d p_model = model.orientation.conjugate() * (p_world - model.position);

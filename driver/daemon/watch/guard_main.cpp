@@ -99,14 +99,14 @@ class GuardLoop {
 
   /// Checks that ticks go on. If a check comes late, the machine may have stood still, so only part of the time counts.
   void checkTicks(Nanoseconds now) {
-    const Nanoseconds way = now - std::exchange(last_, now);
+    const Nanoseconds elapsed = now - std::exchange(last_, now);
     const uint64_t ticks = beat_.ticks.load();
     if (beat_.armed.load() == 0 || std::exchange(ticks_, ticks) != ticks) {
       still_ = 0;
       silenced_ = false;
       return;
     }
-    still_ += way <= kOnTime ? way : kLook;
+    still_ += elapsed <= kOnTime ? elapsed : kLook;
     if (still_ > patience_ && !std::exchange(silenced_, true)) {
       silenceAll(false);
       printEnd("the servo makes no more ticks");

@@ -24,8 +24,8 @@ void Watchdog::stop() {
 }
 
 bool Watchdog::check(Nanoseconds now) noexcept {
-  const Nanoseconds way = now - std::exchange(looked_at_, now);
-  const Nanoseconds seen = way <= kOnTime ? way : kLateCounts;
+  const Nanoseconds elapsed = now - std::exchange(looked_at_, now);
+  const Nanoseconds seen = elapsed <= kOnTime ? elapsed : kLateCounts;
   watchEnd();
   const uint64_t tick = servo_.ticks();
   const Nanoseconds begun = servo_.tickBegun(), next = servo_.nextTick();

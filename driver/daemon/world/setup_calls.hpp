@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells an observer which call of a plugin a World waits for while it sets up a model, because a call may take
+/// Shows an observer which call of a plugin a World waits for while it sets up a model, because a call may take
 /// minutes.
 #pragma once
 #include <functional>

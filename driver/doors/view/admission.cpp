@@ -25,8 +25,8 @@ std::string secret() {
   return text;
 }
 
-/// Tells whether two secrets are equal. Its duration does not depend on where the texts differ, so it does not help to
-/// guess.
+/// Returns whether two secrets are equal. Its duration does not depend on where the texts differ, so it does not help
+/// to guess.
 bool sameSecret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;

@@ -29,7 +29,7 @@ class Playback {
   std::vector<uint64_t> rowsFrom(double seconds) const;
 
   bool takeJumped();   ///< [main] true if the time has jumped since the last call: the page must drop earlier rows
-  bool takeChanged();  ///< [main] true if the state has changed since the last call, so that the page must be told
+  bool takeChanged();  ///< [main] true if the state has changed since the last call, so that the page must get it
   std::string stateJson() const;  ///< [main] {"type": "playback", ...}
 
  private:

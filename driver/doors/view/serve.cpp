@@ -25,7 +25,7 @@ namespace {
 constexpr int kFailed = 1, kBadInput = 2;
 constexpr std::chrono::milliseconds kTick(16);
 
-/// Tells whether a daemon holds the lock on its name.
+/// Returns whether a daemon holds the lock on its name.
 bool daemonLives(const std::string& lock_file) {
   const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) return errno == EACCES;  // the lock file belongs to another user, so the daemon may run

@@ -36,7 +36,7 @@ extern "C" {
 typedef int32_t hsp_status; /* 0 or more: the call worked. Negative: the call failed and changed nothing. */
 enum {
   HSP_OK = 0,
-  HSP_DEGRADED = 1,       /* worked, with a cheaper method to stay within the budget; the residual tells the error */
+  HSP_DEGRADED = 1,       /* worked, with a cheaper method to stay within the budget; the residual is the error */
   HSP_E_ARG = -1,         /* an argument or a parameter is wrong; the log names it */
   HSP_E_STATE = -2,       /* the instance is not in the state that this call needs */
   HSP_E_NOMEM = -3,       /* there is not enough memory */

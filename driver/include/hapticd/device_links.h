@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* device_links.h - an extension of device.h: it tells where the links of the arm are, so that programs can draw the
+/* device_links.h - an extension of device.h: it says where the links of the arm are, so that programs can draw the
  * arm. No force depends on it.
  */
 #ifndef HAPTICD_DEVICE_LINKS_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* device_silence.h - an extension of device.h for the end of the process: it tells whether a cut (hdv.cut) was sent to
+/* device_silence.h - an extension of device.h for the end of the process: it says whether a cut (hdv.cut) was sent to
  * the hardware, and how another process can switch the motors off after the end of this process. */
 #ifndef HAPTICD_DEVICE_SILENCE_H
 #define HAPTICD_DEVICE_SILENCE_H

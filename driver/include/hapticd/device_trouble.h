@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* device_trouble.h - an extension of device.h: it tells in words what is wrong with the arm.
+/* device_trouble.h - an extension of device.h: it says in words what is wrong with the arm.
  */
 #ifndef HAPTICD_DEVICE_TROUBLE_H
 #define HAPTICD_DEVICE_TROUBLE_H

@@ -14,7 +14,7 @@ using codec::Type;
 
 constexpr double kWholeRange = 0.75;  ///< share of the field's range: only a wrong sign or a wrap makes such a step
 
-/// One way to read the raw numbers of a field: each is changed to another number, and then scaled.
+/// One reading of the raw numbers of a field: each is changed to another number, and then scaled.
 struct Decoding {
   enum class Code { kSame, kOtherSign, kAmount } code = Code::kSame;
   double turn = 1;    ///< -1 reverses the direction

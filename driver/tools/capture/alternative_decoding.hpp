@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds positions that become plausible if the same bits are read in another way, such as signed instead of unsigned,
+/// Finds positions that become plausible if the same bits are read differently, such as signed instead of unsigned,
 /// or reversed.
 #pragma once
 #include <string>
@@ -17,7 +17,7 @@ struct Stops {
   double low = 0, high = 0;
 };
 
-/// [main] Tells whether the positions leave the range between the stops. If the zero is unknown, tells whether they
+/// [main] Returns whether the positions leave the range between the stops. If the zero is unknown, returns whether they
 /// span more than this range.
 bool leavesStops(const std::vector<double>& positions, const Stops& stops);
 

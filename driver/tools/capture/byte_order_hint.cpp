@@ -42,7 +42,7 @@ Steps stepsOf(const std::vector<uint64_t>& codes, unsigned bits) {
   return steps;
 }
 
-/// True if both the first and the last byte change: otherwise the joint moved too little to tell the order, or the
+/// True if both the first and the last byte change: otherwise the joint moved too little to show the order, or the
 /// board leaves one byte empty.
 bool bothEndsChange(const std::vector<uint64_t>& codes, unsigned bits) {
   uint64_t changed = 0;

@@ -80,8 +80,8 @@ struct Range {
 void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best) {
   Field field = range.field;
   for (const Method& one : methodsFor(field))
-    for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
-      const bool big = way % 2 == 1, over_id = way >= 2;
+    for (int variant = 0; variant < (id < 0 ? 2 : 4); ++variant) {
+      const bool big = variant % 2 == 1, over_id = variant >= 2;
       if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
       field.check = over_id ? codec::startedWith(one.check, static_cast<uint8_t>(id)) : one.check;
       field.check.big_endian = field.big_endian = big;

@@ -87,7 +87,7 @@ std::string tooLongAWay(const JointSeries& course, Stops stops) {
          "joint?";
 }
 
-/// [rad] The greatest way of a joint that is called tiny although its number changed by many counts, where its stops
+/// [rad] The greatest motion of a joint that is called tiny although its number changed by many counts, where its stops
 /// are unknown.
 constexpr double kTiny = 0.02;
 

@@ -89,7 +89,8 @@ std::string wrongSign(Subject& subject, const Place& place) {
                      : ", as its normal does: turn the sign of force");
 }
 
-/// Finds pulls for which a run would silence the model, on the way straight in from some mm outside and during a press.
+/// Finds pulls for which a run would silence the model, on the straight path in from some mm outside and during a
+/// press.
 std::string pullsThere(Subject& subject, const Place& place) {
   constexpr double kFar = 5e-3;  // [m] the force of a magnet would be felt at this distance
   constexpr int kSteps = 100;

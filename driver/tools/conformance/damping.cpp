@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kNoForce = 0.02, kNoPart = 0.01;  ///< [N], and share of the force: smaller differences are noise
 
-/// A straight way along the normal. It begins at rest below the surface and passes one depth.
+/// A straight path along the normal. It begins at rest below the surface and passes one depth.
 struct Pass {
   double depth = 0, speed = 0;  ///< [m]; [m/s] outward
   int lead = 0;                 ///< ticks of motion before it passes the depth

@@ -12,8 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastWay = 1e-6;  ///< [m] a shorter way in one step is not told from the error of a search
-constexpr double kNoTime = 1e-9;    ///< [s] nothing moves in this time
+constexpr double kLeastWay =
+    1e-6;  ///< [m] a shorter motion in one step cannot be distinguished from the error of a search
+constexpr double kNoTime = 1e-9;  ///< [s] nothing moves in this time
 
 /// Returns a point of the world in the frame of a pose.
 Vector3d inFrame(const hsp_pose& pose, const Vector3d& world) {

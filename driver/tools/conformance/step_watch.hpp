@@ -37,7 +37,7 @@ bool overran();
 /// [main] True if the last child ended before there was an active shape.
 bool endedBeforeSteps();
 
-/// [main] From now on a fault in guarded memory tells the parent which block was overrun. @param probes number of
+/// [main] From now on a fault in guarded memory reports to the parent which block was overrun. @param probes number of
 /// probes of each step
 void tellOverruns(uint32_t probes);
 

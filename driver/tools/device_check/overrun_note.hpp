@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// If a module writes or reads beyond a block of memory, and this ends its child process: tells the parent which block.
+/// If a module writes or reads beyond a block of memory, and this ends its child process: reports to the parent which
+/// block.
 #pragma once
 #include <string>
 

@@ -146,7 +146,7 @@ std::array<int, 3> threeNearest(const std::vector<Ball>& kept, const Vector3d& p
   return best;
 }
 
-/// Tells which spheres are connected.
+/// Finds which spheres are connected.
 class Parts {
  public:
   explicit Parts(std::size_t count) : part_(count), count_(static_cast<int>(count)) {
@@ -169,7 +169,7 @@ class Parts {
   int count_;
 };
 
-/// Tells which edges and triangles of balls stay inside the body.
+/// Finds which edges and triangles of balls stay inside the body.
 class InsideTest {
  public:
   InsideTest(const std::vector<Ball>& kept, const SurfaceSamples& samples, const NearestPoints& nearest,

@@ -137,7 +137,7 @@ void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
                  file.c_str(), size.maxCoeff());
 }
 
-/// Repairs a mesh as for a part, and tells what was done: a file whose cracks are rounding bounds a volume all the
+/// Repairs a mesh as for a part, and reports what was done: a file whose cracks are rounding bounds a volume all the
 /// same.
 Result<Triangles> closedSurface(const MeshFile& file, const MedialImport& options) {
   MeshReport done;

@@ -5,23 +5,23 @@
 
 namespace hapticd::contact {
 
-/// Moves the centre by `stride` times the way to the target, by `longest` [m] at most.
+/// Moves the centre by `stride` times the distance to the target, by `longest` [m] at most.
 void BallProxy::moveTo(const Eigen::Vector3d& target, double stride, double longest) noexcept {
-  const Eigen::Vector3d way = stride * (target - center_);
-  const double length = way.norm();
+  const Eigen::Vector3d motion = stride * (target - center_);
+  const double length = motion.norm();
   if (stride == 1 && length <= longest) {
     center_ = target;
     return;
   }
-  center_ += std::min(1.0, longest / length) * way;
-  center_ -= std::min(bound_.height(center_), 0.0) * bound_.normal;  // beyond the target the way leads below the plane
+  center_ += std::min(1.0, longest / length) * motion;
+  center_ -= std::min(bound_.height(center_), 0.0) * bound_.normal;  // beyond the target it may be below the plane
 }
 
 /// Chooses how far the next move goes. On a convex surface of the radius R the nearest place in the tangent plane falls
-/// short of the nearest place on the surface, by the share l = depth / (R + radius) of the way. So the ways to the
-/// target shrink like a geometric series, and two of them tell how far it goes (Aitken's process; Burden and Faires,
-/// Numerical Analysis, 9th ed., 2.5). On flat and concave surfaces the target is the goal.
-/// @param before, now the way to the target before the last move and after it [m]
+/// short of the nearest place on the surface, by the share l = depth / (R + radius) of the distance. So the
+/// distances to the target shrink like a geometric series, and two of them show its end (Aitken's process; Burden and
+/// Faires, Numerical Analysis, 9th ed., 2.5). On flat and concave surfaces the target is the goal.
+/// @param before, now from the centre to the target before the last move and after it [m]
 void BallProxy::adaptStride(bool clear, const Eigen::Vector3d& before, const Eigen::Vector3d& now) noexcept {
   constexpr double kLongest = 8;
   const double shrunk = before.squaredNorm() > 0 ? 1 - now.dot(before) / before.squaredNorm() : 1;

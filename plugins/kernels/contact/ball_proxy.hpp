@@ -68,11 +68,11 @@ class BallProxy {
 };
 
 /// The centre goes as far as the last foot has shown to be free, or by a radius, so that the ball does not pass over a
-/// ridge. The last foot of a tick goes all the way, however far it is.
+/// ridge. The last move of a tick reaches the target, however far it is.
 ///
 /// Planes are kept from tick to tick, else a ball on two rims would slip aside from each in turn. But planes of a
 /// convex edge or of a wall that has ended would hold the ball in the air. So whenever it is clear of the surface, they
-/// are turned: then only their feet are in its way. And before it rests, it leans where only an old plane holds it.
+/// are turned: then only their feet hold it back. And before it rests, it leans where only an old plane holds it.
 template <class FootAt>
 Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double radius) noexcept {
   if (!known_) center_ = p;
@@ -83,8 +83,8 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
   bool leans = false;
   Eigen::Vector3d target = supports_.nearestTo(p);
   for (int feet_left = kMostFeet; feet_left > 0; --feet_left) {
-    const Eigen::Vector3d way = target - center_;
-    const double longest = leans ? kLean : std::max({gap_, radius, way.norm() / feet_left});
+    const Eigen::Vector3d to_target = target - center_;
+    const double longest = leans ? kLean : std::max({gap_, radius, to_target.norm() / feet_left});
     moveTo(target, leans || target == p || feet_left <= 2 ? 1 : stride_, longest);
     asked_ = center_;
     foot = foot_at(asked_);
@@ -95,7 +95,7 @@ Foot BallProxy::step(const FootAt& foot_at, const Eigen::Vector3d& p, double rad
     if (clear) supports_.turnTo(center_, radius);
     supports_.add(bound_, support_);
     target = nearestFree(p, radius);
-    adaptStride(clear, way, target - center_);
+    adaptStride(clear, to_target, target - center_);
     leans = gap > -kSettled && (target - center_).squaredNorm() < kSettled * kSettled;
     if (!leans) continue;
     if (feet_left < 4 || !supports_.dropOld(center_, radius, kSettled)) break;

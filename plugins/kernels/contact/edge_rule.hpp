@@ -35,7 +35,8 @@ enum class AtEdge : std::uint8_t {
 };
 
 /// [any] Decides whether the contact continues when its held foot is on an edge and would move beyond it. The rule of
-/// Thompson et al. (1999, 5.2.4) gives the next face. This function tells whether the probe is still in contact there.
+/// Thompson et al. (1999, 5.2.4) gives the next face. This function returns whether the probe is still in contact
+/// there.
 /// @param next outward unit normal of the next face
 /// @param r vector from the foot to the probe [m]
 inline AtEdge atEdge(EdgeKind kind, const Eigen::Vector3d& next, const Eigen::Vector3d& r) noexcept {

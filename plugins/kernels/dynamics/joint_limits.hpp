@@ -5,8 +5,8 @@
 
 namespace hapticd::dynamics {
 
-/// The range of a joint between its two end stops: angles of a hinge [rad], or ways of a slider [m], from the initial
-/// pose. Infinite limits mean that there is no stop.
+/// The range of a joint between its two end stops: angles of a hinge [rad], or travels of a slider [m], from the
+/// initial pose. Infinite limits mean that there is no stop.
 struct JointLimits {
   double lowest = -HUGE_VAL;
   double highest = HUGE_VAL;

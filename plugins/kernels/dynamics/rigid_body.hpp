@@ -38,7 +38,7 @@ struct RigidBodyLaw {
   Joint joint = Joint::kFree;
   Eigen::Vector3d pivot{0, 0, 0};  ///< pivot of a hinge [m]
   Eigen::Vector3d axis{0, 1, 0};   ///< direction of the axis of a hinge or slider
-  /// angle [rad] of a hinge or way [m] of a slider, from the initial pose, at which its spring is relaxed
+  /// angle [rad] of a hinge or travel [m] of a slider, from the initial pose, at which its spring is relaxed
   double rest = 0;
   JointLimits limits;  ///< end stops of a hinge or slider
 };
@@ -84,7 +84,7 @@ class RigidBody {
   Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model frame [rad/s]
   /// [rt] energy [J]: kinetic energy, energy of the springs, and potential energy of gravity (0 at the start)
   double energy() const noexcept;
-  /// [rt] angle [rad] of a hinge or way [m] of a slider since the initial pose; 0 for a free body. The angle counts
+  /// [rt] angle [rad] of a hinge or travel [m] of a slider since the initial pose; 0 for a free body. The angle counts
   /// whole turns if there is a torsion spring or a limit.
   double jointPosition() const noexcept;
   /// [any] moment of inertia about the axis of a hinge [kg m^2], or mass of a slider [kg]; 0 for a free body

@@ -53,7 +53,7 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
     const auto& range = skeleton.parameters()[a];
     const double pull = tangent[a].dot(normal) + slope[a];
     held[a] = held[a] || (at[a] <= range.front() && pull <= 0) || (at[a] >= range.back() && pull >= 0);
-    // If `normal` is not the direction from the foot, it does not tell how the foot moves; the foot then moves as on a
+    // If `normal` is not the direction from the foot, it does not say how the foot moves; the foot then moves as on a
     // flat skeleton.
     aside[a] = tangent[a] - direct * tangent[a].dot(normal) * normal;
   }

@@ -7,7 +7,7 @@
 
 namespace hapticd::brep {
 
-/// An error in a part. Its text tells the user which record is wrong, its value, and what was expected.
+/// An error in a part. Its text says which record is wrong, its value, and what was expected.
 class PartError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

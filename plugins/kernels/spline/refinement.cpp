@@ -111,20 +111,20 @@ std::vector<SurfaceData> strips(const SurfaceData& surface, int axis, const std:
 }
 
 /// How a piece beside a cusp became regular.
-enum class Mended : std::uint8_t {
+enum class Regularity : std::uint8_t {
   kStraight,  ///< it is straight along the axis, or not beside a cusp
   kGraded,    ///< its speed was evened out
   kDoubtful   ///< its speed still varies, or its weights bend it so that the distance may have many minima
 };
 
 /// Makes a piece regular along an axis.
-Mended mend(const std::vector<double>& cusps, SurfaceData& piece, int axis) {
-  if (straighten(piece, axis)) return Mended::kStraight;
+Regularity makeRegular(const std::vector<double>& cusps, SurfaceData& piece, int axis) {
+  if (straighten(piece, axis)) return Regularity::kStraight;
   const double lo = piece.domain(axis)[0], hi = piece.domain(axis)[1];
   if (std::none_of(cusps.begin(), cusps.end(), [=](double cusp) { return cusp == lo || cusp == hi; }))
-    return Mended::kStraight;
+    return Regularity::kStraight;
   const bool sure = piece.degree[static_cast<std::size_t>(1 - axis)] == 1 || weightsAreAlike(piece, axis);
-  return grade(piece, axis) && sure ? Mended::kGraded : Mended::kDoubtful;
+  return grade(piece, axis) && sure ? Regularity::kGraded : Regularity::kDoubtful;
 }
 
 /// The parts of a surface, and whether one beside a cusp is doubtful.
@@ -141,17 +141,17 @@ Parting parting(const SurfaceData& surface, double smooth_angle) {
   Parting result;
   for (std::size_t i = 0; i + 1 < us.size(); ++i) {
     SurfaceData strip = strips_u[i];
-    const Mended along_u = mend(cusps[0], strip, 0);
+    const Regularity along_u = makeRegular(cusps[0], strip, 0);
     for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
       SurfaceData part = LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1);
-      const Mended worse = std::max(along_u, mend(cusps[1], part, 1));
+      const Regularity worse = std::max(along_u, makeRegular(cusps[1], part, 1));
       // In a strip that is flat as a whole, only the corners matter, not the curves between its parts.
-      const bool flat = worse != Mended::kStraight &&
+      const bool flat = worse != Regularity::kStraight &&
                         (isFlatQuad(strips_u[i]) || isFlatQuad(strips_v[j]) ||
                          isFlatQuad(LineSet(strips_u[i], 1).part(vs[j], vs[j + 1]).surface(strips_u[i], 1)));
       if (flat) makeBilinear(part);
       if (isOnlyALine(part, 0) || isOnlyALine(part, 1)) continue;
-      result.doubtful = result.doubtful || (worse == Mended::kDoubtful && !flat);
+      result.doubtful = result.doubtful || (worse == Regularity::kDoubtful && !flat);
       result.parts.push_back(std::move(part));
     }
   }

@@ -69,7 +69,7 @@ struct SoundParts {
   std::array<bool, 2> knots{true, true};
 };
 
-/// [main] Makes the same checks of the parts that could be read, and tells everything that is wrong.
+/// [main] Makes the same checks of the parts that could be read, and reports everything that is wrong.
 void checkParts(const SurfaceData& data, const SoundParts& read, const Tell& tell);
 
 }  // namespace hapticd::spline

@@ -188,7 +188,7 @@ int Tracer::slideOn(int track, const Vector3d& p, const TraceOptions& options) n
 /// Finds the first surface that a straight path to p enters through a side that is felt.
 Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3d& p,
                                        const TraceOptions& options) noexcept {
-  // A face that the path crosses is nearer to its end than this. So the layers of a rolled sheet are told apart.
+  // A face that the path crosses is nearer to its end than this. So the layers of a rolled sheet are distinguished.
   const bool shell = options.rule.sides == contact::Sides::kBoth;
   const double within = (p - path.from.point).norm() - (shell ? path.from.clearance : 0);
   std::array<int, kMostCandidates> near{};

@@ -23,7 +23,7 @@ struct TraceOptions {
   Method method = Method::kNewton;
   int iterations = 1;                 ///< steps of kDirect per tick on a surface, 1 to 4
   double tolerance = 1e-9;            ///< [m] kNewton stops when the estimated error of the foot point is below this
-  static constexpr int kForSide = 6;  ///< evaluations that tell on which side of an open shell a path began
+  static constexpr int kForSide = 6;  ///< evaluations that show on which side of an open shell a path began
   /// evaluations that a tick has at least where both sides are felt: with fewer, a press at a pole, seam or fold falls
   /// through or is felt late
   static constexpr int kForShell = 12;
@@ -171,7 +171,7 @@ class Tracer {
   int nearest_ = -1;         ///< track with the nearest foot point of all surfaces, or -1
   int budget_ = 0;           ///< evaluations left in this tick
   int last_shell_ = -1;      ///< shell of the nearest foot in the last tick, or -1
-  bool undecided_ = false;   ///< true if the evaluations of this tick did not suffice to tell whether a path enters
+  bool undecided_ = false;   ///< true if the evaluations of this tick did not suffice to decide whether a path enters
   bool unfinished_ = false;  ///< true if a place beyond a side of the foot that is followed remains unseen in this tick
   bool has_last_ = false;
 };

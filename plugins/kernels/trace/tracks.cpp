@@ -82,9 +82,9 @@ void Tracks::restart(int patch, const Array2d& uv) noexcept {
 /// tick in which the previous results arrived. The search of the new results began after that tick, because the results
 /// of one search arrive in one tick (sim/proximity.cpp), unless there are more than a tick takes (1024). Of those that
 /// arrive later, the bounds are then too large by the path in between, 2 mm at most with a hand of 2 m/s at 1 kHz. This
-/// stays: a tick has no time for more records, and nothing tells a late record from one of the next search. If records
-/// in the tick after were always taken for late ones, the bounds would be looser where searches come in each tick, and
-/// recordings of such runs would not replay.
+/// stays: a tick has no time for more records, and nothing distinguishes a late record from one of the next search. If
+/// records in the tick after were always taken for late ones, the bounds would be looser where searches come in each
+/// tick, and recordings of such runs would not replay.
 void Tracks::noteSearch() noexcept {
   if (told_ == tick_) return;
   told_before_ = told_;

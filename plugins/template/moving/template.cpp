@@ -38,23 +38,23 @@ struct TemplatePlate : hapticd::Shape {
 
   void activate(const hsp_activation& activation, hsp_report& report) {
     home_ = activation.pose;
-    way_ = rate_ = push_ = give_ = 0;
+    travel_ = rate_ = push_ = give_ = 0;
     report.max_stiffness = stiffness;
     report.size_m = std::hypot(width, width, thickness) + thickness;
     report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   }
 
-  /// Forgets the contacts, because the next probe may be elsewhere. Way and speed stay: a body does not jump.
+  /// Forgets the contacts, because the next probe may be elsewhere. Travel and speed stay: a body does not jump.
   void reset() noexcept HSP_RT { push_ = give_ = 0; }
 
   /// Moves, writes the new pose, and answers in the frame of the new pose. The probes come in the frame of the old one.
   hsp_status step(const hsp_step& step) noexcept HSP_RT {
-    const double before = way_;
+    const double before = travel_;
     move(step.dt_s);
     place(*step.pose);
     push_ = give_ = 0;
     return hapticd::touchEach(step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t) {
-      touch(probe, way_ - before, contact);
+      touch(probe, travel_ - before, contact);
       return HSP_OK;
     });
   }
@@ -70,8 +70,8 @@ struct TemplatePlate : hapticd::Shape {
   /// step, which the plate reaches with its new rate. So the motion is stable for every mass and stiffness. With forces
   /// of the beginning of the step a light plate would tremble at the hand.
   void move(double dt) noexcept HSP_RT {
-    rate_ = (mass * rate_ - dt * (spring * way_ + push_)) / (mass + dt * damping + dt * dt * (spring + give_));
-    way_ += dt * rate_;
+    rate_ = (mass * rate_ - dt * (spring * travel_ + push_)) / (mass + dt * damping + dt * dt * (spring + give_));
+    travel_ += dt * rate_;
   }
 
   /// Writes position and velocity, both in the world frame. The plate does not turn.
@@ -80,10 +80,10 @@ struct TemplatePlate : hapticd::Shape {
     const double axis[3] = {2 * (q[1] * q[2] - q[0] * q[3]), 1 - 2 * (q[1] * q[1] + q[3] * q[3]),
                             2 * (q[2] * q[3] + q[0] * q[1])};  // the plate's y axis in the world
     pose = home_;
-    for (int i = 0; i < 3; ++i) pose.position[i] += way_ * axis[i], pose.linear[i] = rate_ * axis[i];
+    for (int i = 0; i < 3; ++i) pose.position[i] += travel_ * axis[i], pose.linear[i] = rate_ * axis[i];
   }
 
-  /// Answers one probe, and keeps how it pushes the plate. @param moved [m] way of the plate in this step
+  /// Answers one probe, and keeps how it pushes the plate. @param moved [m] by which the plate moved in this step
   void touch(const hsp_probe& probe, double moved, hsp_contact& out) noexcept HSP_RT {
     if ((probe.flags & HSP_IN_INVALID) != 0) return;  // no sample: no force
     const double half = width / 2;
@@ -143,7 +143,7 @@ struct TemplatePlate : hapticd::Shape {
   }
 
   hsp_pose home_{};                   // pose at rest
-  double way_ = 0, rate_ = 0;         // [m], [m/s] along y
+  double travel_ = 0, rate_ = 0;      // [m], [m/s] along y
   double push_ = 0, give_ = 0;        // [N] force of all probes along y in the last step; [N/m] how fast it grows
   std::vector<float> xyz_, normals_;  // for drawing
   std::vector<uint32_t> indices_;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What people who write a shape and its hand get wrong is told at its own place, all at once, and with a mend that helps.
+"""What people who write a shape and its hand get wrong is reported at its own place, all at once, and with a fix that helps.
 
 Usage: shape_slips.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """

@@ -78,7 +78,7 @@ def aDoorStandsAtItsStop(folder):
     check("plot draws the angle and the stops", ">angle of door<" in drawn and ">end stop: 0 rad<" in drawn and ">end stop: 0.6 rad<" in drawn, told)
     check("models.csv has the names of the numbers", open(os.path.join(table, "models.csv")).read() == "model,name,plugin,from_tick\n0,door,nurbs_rigid,0\n")
     code, told = hapticd("explain", file, "--json")
-    check("explain of a recording refuses --json", code == 2 and "told in words alone" in told, told)
+    check("explain of a recording refuses --json", code == 2 and "explained in words alone" in told, told)
 
 
 def theManualReadsIt(file):

@@ -107,7 +107,7 @@ class Core {
   /// [s] A model that came, or was enabled, is felt once no tip has been inside for this time. Until it was searched
   /// for, no tip seems to be inside; a search runs every 5 ms, less often on a busy machine.
   static constexpr double kFreeFor = 0.05;
-  /// [s] After a longer gap between two ticks nobody knows which way a probe went.
+  /// [s] After a longer gap between two ticks nobody knows on which path a probe went.
   static constexpr double kLongestGap = 0.1;
 
   /// [main] @param models active shapes in the order of the scene, in the poses in which they were activated

@@ -94,21 +94,21 @@ double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const Claim
 
 /// Returns the largest change [N] of the force that the motion of probe and model since the last step explains.
 double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT {
-  double way = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
+  double moved = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
   double change = (step.velocity - velocity_).norm();
   if (bounds.moves_itself) {
     const double own = (step.p_world - p_world_).norm();
-    way = std::min(way, own + ownWay(step, dt));
+    moved = std::min(moved, own + ownMotion(step, dt));
     if (dt > 0) speed = std::min(speed, own / dt + kOwnSpeed);
     change = std::min(change, speed);
   }
-  if (dt > 0) speed = std::max(speed, way / dt);
-  return stiffnessOf(bounds) * way + std::max(kDamping * change, kMargin * bounds.damping * speed);
+  if (dt > 0) speed = std::max(speed, moved / dt);
+  return stiffnessOf(bounds) * moved + std::max(kDamping * change, kMargin * bounds.damping * speed);
 }
 
 /// Returns how far [m] the surface at the probe may have moved by the pose that the shape reports. It is bounded by
 /// kOwnSpeed and kOwnTurn, so that a model that spins about the probe explains next to nothing.
-double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
+double Claim::ownMotion(const ClaimStep& step, double dt) const noexcept HSP_RT {
   const double along = std::min((step.origin - origin_).norm(), kOwnSpeed * dt);
   if (step.turn == nullptr) return along;
   const Vector3d arm = step.p_world - step.origin;

@@ -113,7 +113,7 @@ class Claim {
   static double turn(Eigen::Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
                      double dt) noexcept HSP_RT;
   double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT;
-  double ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT;
+  double ownMotion(const ClaimStep& step, double dt) const noexcept HSP_RT;
   bool takePass(const ClaimStep& step) noexcept HSP_RT;
   void remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT;
 

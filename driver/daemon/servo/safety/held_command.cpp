@@ -21,8 +21,8 @@ double longestHeld(double servo_rate, double arm_rate) {
 
 double shareHeld(double held) {
   if (held <= kHeldInFull) return 1;
-  const double way = kHeldForWay / held;
-  return std::min(kHeldInFull / held, way * way);
+  const double shorter = kHeldForDistance / held;
+  return std::min(kHeldInFull / held, shorter * shorter);
 }
 
 double mostForceAt(double servo_rate, double arm_rate, double device_force) {

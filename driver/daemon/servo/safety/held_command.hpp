@@ -11,7 +11,7 @@ namespace hapticd::servo {
 constexpr double kHeldInFull = 2.8e-3;
 /// [s] In this time 8.5 N move the same tip by 0.93 mm. The force of a command that is held for longer is reduced until
 /// the tip moves no farther.
-constexpr double kHeldForWay = 3.6e-3;
+constexpr double kHeldForDistance = 3.6e-3;
 /// [N] Largest force of the arm for which the times above were calculated. For a stronger arm, shareHeld() is a share
 /// of its own largest force, because a stronger arm is also heavier.
 constexpr double kReckonedForce = 8.5;

@@ -12,8 +12,8 @@ double SampleSpeed::update(const Eigen::Vector3d& position, uint64_t stamp_ns, d
   const bool stamped = stamp_ns > stamp_ns_;
   const double measured = stamped ? static_cast<double>(stamp_ns - stamp_ns_) * 1e-9 : passed;
   const double seconds = std::max(shortest_, std::min(measured, passed + kAhead));
-  const double way = (position - position_).norm() - resolution_;  // one step of the encoder is not yet motion
-  const double speed = known_ ? std::max(0.0, way) / seconds : 0;
+  const double moved = (position - position_).norm() - resolution_;  // one step of the encoder is not yet motion
+  const double speed = known_ ? std::max(0.0, moved) / seconds : 0;
   known_ = true;
   stamp_ns_ = stamp_ns;
   position_ = position;

@@ -35,9 +35,9 @@ class ProbeVelocity {
   /// [rt] Takes a sample and returns the velocity [m/s]: zero after a gap or a jump. @param position [m]
   /// @param dt [s] since the last sample
   Eigen::Vector3d update(const Eigen::Vector3d& position, double dt) noexcept {
-    const double way = known_ ? (position - last_).norm() : 0;
-    speed_ = dt > 0 ? way / dt : 0;
-    if (!(way <= kMaxProbeSpeed * dt)) estimator_.reset();
+    const double moved = known_ ? (position - last_).norm() : 0;
+    speed_ = dt > 0 ? moved / dt : 0;
+    if (!(moved <= kMaxProbeSpeed * dt)) estimator_.reset();
     known_ = true;
     last_ = position;
     return estimator_.update(position, dt);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Logs what a command waits for while a plugin takes long to set up a model. A large model may need minutes, and a
-/// faulty plugin never returns. It hears of the calls that a World makes; without such a line nobody could tell
+/// faulty plugin never returns. It hears of the calls that a World makes; without such a line nobody could know
 /// what the command does.
 #pragma once
 #include <condition_variable>

@@ -72,7 +72,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
   nameModels(log.names(), models);
   for (uint64_t row = 0; row < events->rows(); ++row) {
     const hapticd_event event = eventAt(*events, columns, row);
-    if (event.kind == HAPTICD_END_STOP) continue;  // the motion of a joint tells more
+    if (event.kind == HAPTICD_END_STOP) continue;  // the motion of a joint says more
     EventLog::Message message = log.messageOf(event);
     log.note(event);
     if (!message.text.empty())

@@ -25,7 +25,7 @@ struct DrawingRoom {
   std::size_t bytes = 0;               ///< for the message if nothing fits
   std::size_t bytes_per_triangle = 1;  ///< a guess for the first try: a drawing that needs more is tried with fewer
   bool normals = true;                 ///< false if normals are of no use: then the plugin's are ignored
-  std::function<bool(const hsp_mesh&)> fits = nullptr;  ///< tells whether a drawing fits
+  std::function<bool(const hsp_mesh&)> fits = nullptr;  ///< returns whether a drawing fits
 };
 
 struct Drawing {

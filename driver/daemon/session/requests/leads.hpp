@@ -54,7 +54,7 @@ class Leads {
   Result<Descriptor> begin(Target target, const control::Peer& peer);
   /// [main] Ends this peer's lead of a target.
   Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, PushEvent::kEnds); }
-  /// [main] Ends the lead of a model, if there is one, because the model is moved in another way or is removed.
+  /// [main] Ends the lead of a model, if there is one, because something else moves the model, or it is removed.
   Result<void> endOfModel(uint32_t model);
   /// [main] Ends all leads of a force, because programs may no longer push. Later answers of these programs are not
   /// read.

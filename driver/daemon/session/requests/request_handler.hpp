@@ -56,7 +56,7 @@ class RequestHandler {
   Result<std::string> dump(const std::string& why);
 
  private:
-  /// Makes an error. @param code one word by which programs can tell errors apart
+  /// Makes an error. @param code one word by which programs can distinguish errors
   Error refuse(const char* code, std::string why) const {
     code_ = code;
     return Error{std::move(why)};

@@ -78,7 +78,7 @@ class Runner {
   /// [any] Gives an order to the servo. Only one thread may call this.
   bool postOrder(const Order& order) { return loop_->post(order); }
   Door& door() { return loop_->door(); }
-  /// [main] Called after the run, before its socket closes: tells programs that the run ended in order.
+  /// [main] Called after the run, before its socket closes: shows programs that the run ended in order.
   void noteEnd() { telemetry_->flight()->ring().noteEnd(); }
   /// [main] Called after the run: removes the file of the black box.
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }

@@ -25,7 +25,7 @@ scene::Scene withArm(scene::Scene scene, host::Catalog& catalog) {
 }
 
 void warnOfSlips(const std::filesystem::path& file, document::Problems& warnings) {
-  document::Problems unread;  // is told by those who load the scene
+  document::Problems unread;  // is reported by those who load the scene
   const auto root = document::readFileOn(file, unread);
   if (!root) return;
   warnOfZeros(*root, file.string(), warnings);

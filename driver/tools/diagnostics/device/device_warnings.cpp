@@ -84,13 +84,13 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
 void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* pose = find(root, {"parameters", "calibration", "pose"});
   const scene::Value* limits = givenIn(device.parameters, "arm.limits");
-  // Limits in degrees say nothing about a pose; they are told themselves.
+  // Limits in degrees say nothing about a pose; they are reported themselves.
   if (largest(numbersIn(find(root, {"parameters", "arm", "limits"}))) > 2 * M_PI) return;
   if (pose == nullptr || limits == nullptr || 2 * pose->items.size() != limits->numbers.size()) return;
   for (size_t i = 0; i < pose->items.size(); ++i) {
     const double angle = document::toNumber(pose->items[i].scalar).value_or(0);
     const double low = limits->numbers[2 * i], high = limits->numbers[2 * i + 1], room = 0.05 * (high - low);
-    const bool degrees = std::abs(angle) > 2 * M_PI;  // this is told itself
+    const bool degrees = std::abs(angle) > 2 * M_PI;  // this is reported itself
     if (degrees || high < low || (angle >= low - room && angle <= high + room)) continue;
     document::report(warnings, device.file.string(), pose->items[i].line, pose->items[i].column,
                      fmt::format("parameters.calibration.pose[{}]", i),
@@ -169,10 +169,10 @@ scene::Device withPlainBoard(scene::Device device, size_t joints) {
 std::unique_ptr<host::DeviceInstance> makeArm(const Node& root, const scene::Device& device,
                                               const document::Problems& known) {
   if (!kinematicsKnown(known)) return nullptr;
-  std::vector<scene::Device> ways{device};
+  std::vector<scene::Device> attempts{device};
   if (const size_t joints = jointsIn(root); !known.empty() && joints > 0)
-    ways.push_back(withPlainBoard(device, joints));
-  for (const scene::Device& one : ways)
+    attempts.push_back(withPlainBoard(device, joints));
+  for (const scene::Device& one : attempts)
     if (known.empty() || tryModule(one).error.empty())
       if (auto made = host::DeviceInstance::create(one, nullptr)) return std::move(*made);
   return nullptr;

@@ -54,7 +54,7 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   double most = 600;  // [N mm] as an example
   if (torques != nullptr && !torques->numbers.empty())
     most = *std::max_element(torques->numbers.begin(), torques->numbers.end());
-  const std::string allowed =  // a wrong limit is told elsewhere, and was not read
+  const std::string allowed =  // a wrong limit is reported elsewhere, and was not read
       device.limits.force > 0 ? fmt::format(", but limits.force allows only {:g} N", device.limits.force) : "";
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
                    fmt::format("these torques give {} N at the tip{}; torques must be in N m, here and in the "

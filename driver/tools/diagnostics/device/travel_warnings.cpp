@@ -196,7 +196,8 @@ void warnOfTravel(const Node& root, const scene::Device& device, size_t joints, 
     const auto said = sayable(field);
     if (field.role != Role::kPosition || field.index >= joints) continue;
     const auto [low, high] = std::minmax(limits[2u * field.index], limits[2u * field.index + 1]);
-    const PositionRange stops{low, high};  // in order, also where the file has them in the other one: told elsewhere
+    const PositionRange stops{low,
+                              high};  // in order, also where the file has them in the other one: reported elsewhere
     if (!areStops(stops)) continue;
     if (const std::string turned = said && !zeroedByPose(device) ? offsetTurnedRound(field, *said, stops) : "";
         !turned.empty() && tellOffset(fields->items[i], i, device, turned, warnings))

@@ -48,7 +48,7 @@ void checkSpeed(const scene::Scene& scene, const scene::Device& device, const Ha
 void checkSlowMotion(const scene::Device& device, const HandScript& hand, document::Problems& warnings) {
   constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s]; [s]; [m] a shorter path counts as rest
   constexpr double kWidest = 2;                             // [m] places farther away must be in mm
-  const double unit = hand.path_widest > kWidest ? 1e-3 : 1, way = unit * hand.path_way;
+  const double unit = hand.path_widest > kWidest ? 1e-3 : 1, way = unit * hand.path_length;
   if (hand.kind != Kind::kPath || hand.path_end < kLong || way < kFar) return;
   if (unit * hand.path_speed > 10 * kCrawl || way > kCrawl * hand.path_end) return;
   document::report(
@@ -84,9 +84,9 @@ document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread
     const bool wide = checkSweep(device, *hand, unread, warnings);
     const size_t before = warnings.size();
     if (wide && hand->sweep <= 360 && !unread.has("hand")) {  // judged with the sweep that was probably meant
-      HandScript mended = *hand;
-      mended.sweep *= std::numbers::pi / 180;
-      checkSpeed(scene, device, mended, warnings);
+      HandScript meant = *hand;
+      meant.sweep *= std::numbers::pi / 180;
+      checkSpeed(scene, device, meant, warnings);
     } else if (!wide && !unread.has("hand")) {
       checkSpeed(scene, device, *hand, warnings);
       checkSlowMotion(device, *hand, warnings);

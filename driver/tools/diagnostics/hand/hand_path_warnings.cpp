@@ -68,7 +68,7 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
 /// Returns a text with the line of the first row that the arm cannot follow, the reason, and how many rows there are;
 /// "=" if it can follow all.
 std::string tryRows(const scene::Device& device, const std::string& file) {
-  const auto table =  // wrong rows are told by the module, which opens the file
+  const auto table =  // wrong rows are reported by the module, which opens the file
       document::readSoundRows(file, kMaxBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true});
   scene::Device at_rest = device;  // its module refuses a file with a wrong row
   std::erase_if(at_rest.parameters, [](const scene::Value& value) { return value.id.starts_with("hand."); });

@@ -27,7 +27,7 @@ double numberOf(const scene::Device& device, const hdv_class& module, const char
 void readPath(const scene::Device& device, HandScript& hand) {
   const scene::Value* path = givenIn(device.parameters, "hand.path");
   if (path == nullptr) return;
-  const auto table =  // wrong rows are told by the module, which opens the file
+  const auto table =  // wrong rows are reported by the module, which opens the file
       document::readSoundRows(path->text, kMaxPathBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true});
   if (!table || table->rows() == 0) return;
   hand.path_end = table->row(table->rows() - 1)[0];
@@ -38,7 +38,7 @@ void readPath(const scene::Device& device, HandScript& hand) {
   for (size_t i = 1; i < table->rows(); ++i) {
     const double *from = table->row(i - 1), *to = table->row(i);
     const double way = std::hypot(to[1] - from[1], to[2] - from[2], to[3] - from[3]), speed = way / (to[0] - from[0]);
-    hand.path_way += way;
+    hand.path_length += way;
     if (speed <= hand.path_speed * (1 + 1e-9)) continue;  // of equal speeds, the first counts
     hand.path_speed = speed;
     hand.path_fastest_at = from[0];

@@ -20,7 +20,7 @@ struct HandScript {
   double lead_in = 0;                                 ///< [s]
   double approach = 0;                                ///< [m] how much farther out than its first aim the hand starts
   double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< path file: end [s], top speed [m/s], its time [s]
-  double path_way = 0;                                       ///< [m] length of that path
+  double path_length = 0;                                    ///< [m] length of that path
   double path_widest = 0;                                    ///< [m] largest coordinate in it
   document::Place path_times;                                ///< where its file has the second time
 

@@ -140,7 +140,7 @@ std::optional<MountKey> mountOf(const scene::Scene& scene, uint32_t device) {
   return std::nullopt;
 }
 
-/// Returns where to tell that an arm and its nearest model are far apart: at the one that is farther from the origin.
+/// Returns where to report that an arm and its nearest model are far apart: at the one that is farther from the origin.
 MountKey keyOfFar(const scene::Scene& scene, uint32_t device, uint32_t model, const Eigen::Vector3d& tip) {
   const std::string key = fmt::format("models[{}].pose.position", model);
   const scene::Model& nearest = scene.models[model];

@@ -6,7 +6,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of a `hand` at the top of a scene beside one in `device` or `devices`, and tells which one holds.
+/// [main] Warns of a `hand` at the top of a scene beside one in `device` or `devices`, and says which one holds.
 void warnOfTwoHands(const document::Node& root, const std::string& file, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

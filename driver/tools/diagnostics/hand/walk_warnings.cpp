@@ -138,19 +138,18 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
 /// Warns of a model that is touched, but pushes so little that nobody feels it.
 void reportUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen, document::Problems& warnings) {
   document::Place place = model.place;
-  std::string key = fmt::format("models[{}]", index), mend = "expected more stiffness";
+  std::string key = fmt::format("models[{}]", index), fix = "expected more stiffness";
   for (const char* id : {"depth_scale", "exponent", "stiffness"})
     if (const scene::Value* value = givenIn(model.parameters, id)) {
       place = value->place;
       key += std::string(".parameters.") + id;
-      if (id != std::string_view("stiffness"))
-        mend = "depth_scale must be in m (1 mm is 0.001), or give more stiffness";
+      if (id != std::string_view("stiffness")) fix = "depth_scale must be in m (1 mm is 0.001), or give more stiffness";
       break;
     }
   document::report(
       warnings, place, key,
       fmt::format("{} cannot be felt: the hand is up to {:.3g} mm deep in it, but its force is at most {:.2g} N; {}",
-                  model.name, seen.depth * 1e3, seen.force, mend));
+                  model.name, seen.depth * 1e3, seen.force, fix));
 }
 
 /// Returns what to do about a limit that takes almost all of the force.

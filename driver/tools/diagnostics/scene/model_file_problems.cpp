@@ -87,7 +87,7 @@ void separateModelFiles(document::Problems& problems) {
     }
     if (other) {
       one.what = one.what.substr(0, quoteIn(one.what)) + std::to_string(parts.size()) + " problems in " +
-                 parts[0].place.file + ", told at their own places; is it the right file?";
+                 parts[0].place.file + ", reported at their own places; is it the right file?";
       all.push_back(std::move(one));
     }
     for (document::Problem& part : parts)

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kChord = 2e-4;         ///< [m] error of the triangles
-constexpr double kOverlap = 1e-3;       ///< [m] smaller overlaps are not told
+constexpr double kOverlap = 1e-3;       ///< [m] smaller overlaps are not reported
 constexpr size_t kMostModels = 64;      ///< in larger scenes nothing is judged
 constexpr size_t kMostTriangles = 2e4;  ///< larger models are left out, because each point is compared with all of them
 constexpr size_t kMostTests = 3e7;      ///< points times triangles, of all pairs together

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells what a check waits for while a plugin takes long to set up a model.
+/// Says what a check waits for while a plugin takes long to set up a model.
 #pragma once
 #include "description/scene.hpp"
 #include "host/child.hpp"

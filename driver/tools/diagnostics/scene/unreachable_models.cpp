@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Tells whether a model stays in its place: neither its plugin, nor a path, nor a program moves it.
+/// Returns whether a model stays in its place: neither its plugin, nor a path, nor a program moves it.
 bool rests(const scene::Model& model, const host::ShapeInstance& shape) {
   return !model.kinematic && (shape.report().flags & HSP_R_MOVES) == 0;
 }

@@ -59,13 +59,13 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
                            : how.estimator == "kalman"
                                ? fmt::format("the estimator kalman at {:g} Hz", rate)
                                : fmt::format("{} over {:.4g} samples at {:g} Hz", how.estimator, how.parameter, rate);
-  const std::string mend = cut_off ? "expected 50 Hz or more (only the estimator window takes a number of samples)"
-                           : how.estimator == "kalman" ? "expected a higher servo.rate"
-                                                       : fmt::format("expected at most {:.0f}", std::floor(most));
+  const std::string fix = cut_off ? "expected 50 Hz or more (only the estimator window takes a number of samples)"
+                          : how.estimator == "kalman" ? "expected a higher servo.rate"
+                                                      : fmt::format("expected at most {:.0f}", std::floor(most));
   document::report(warnings, placeInServo(scene, kParameter), kParameter,
                    fmt::format("{} lags by up to {:.3g} ms: damping and friction act too late, and can push the hand; "
                                "{}",
-                               lags, delay * 1e3, mend));
+                               lags, delay * 1e3, fix));
   return warnings;
 }
 

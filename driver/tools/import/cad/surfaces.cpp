@@ -113,7 +113,7 @@ double deviation(const Geom_Surface& a, const Geom_Surface& b, const Vector2& lo
 }
 
 /// Approximates a surface, unless it is a spline that a part holds. A fit that shall be smoother than the surface
-/// misses it by far beside the creases, while Open CASCADE tells a small error; so creases are allowed where the
+/// misses it by far beside the creases, while Open CASCADE reports a small error; so creases are allowed where the
 /// surface has some, and the error is measured as well.
 Handle(Geom_BSplineSurface)
     asSpline(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, double& error) {

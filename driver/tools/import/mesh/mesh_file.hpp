@@ -40,7 +40,7 @@ Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name, c
 Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parsePlyMesh(std::string_view bytes, const std::string& name);
 
-/// [any] Tells whether a file name has the ending of a mesh.
+/// [any] Returns whether a file name has the ending of a mesh.
 bool isMeshFile(const std::string& name);
 
 }  // namespace hapticd::importing

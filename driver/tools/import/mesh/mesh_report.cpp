@@ -16,7 +16,7 @@ std::string where(const Vector3d& p) {
   return text + ") mm";
 }
 
-/// Tells that shells, or bodies, pass through each other.
+/// Reports that shells, or bodies, pass through each other.
 void tellCrossings(const Crossings& found, std::size_t count, const char* one, const char* many,
                    std::vector<std::string>& lines) {
   if (found.pairs > 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Collects what is wrong with the lines of a mesh file, so that a person can mend all of them at once.
+/// Collects what is wrong with the lines of a mesh file, so that a person can fix all of them at once.
 #pragma once
 #include <algorithm>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells whether a point of the parameter plane lies inside the loops of a face.
+/// Decides whether a point of the parameter plane lies inside the loops of a face.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Triangles that are so narrow that the rounding of their corners may decide where they look. Some files have them
-/// beside points that a program put on an edge. A foot must not be held there, and no side be told by their normals.
+/// beside points that a program put on an edge. A foot must not be held there, and their normals must not decide a
+/// side.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -35,8 +36,8 @@ class NearFoot {
   bool hasNarrow() const noexcept;
   /// Returns the first triangle but the given one that is not narrow and looksAlong() a normal, or kNone.
   std::uint32_t nextWide(const Part& part, std::uint32_t triangle, const Eigen::Vector3d& normal) const noexcept;
-  /// Returns an outward normal at the foot for a probe at r from it, by which the side of the probe is told, from the
-  /// triangles that are not narrow; 0 if these do not tell it, as beside a foil, whose narrow border is real.
+  /// Returns an outward normal at the foot for a probe at r from it, by which the side of the probe is decided, from
+  /// the triangles that are not narrow; 0 if these do not decide it, as beside a foil, whose narrow border is real.
   Eigen::Vector3d normalToward(const Part& part, const Eigen::Vector3d& r) const noexcept;
 
  private:

@@ -22,7 +22,7 @@ bool belongs(const Part& part, std::uint32_t index, const std::string& wanted) {
   return false;
 }
 
-/// Refuses a name that instances with different paths have. Instances with one path cannot be told apart, so all of
+/// Refuses a name that instances with different paths have. Instances with one path cannot be distinguished, so all of
 /// them are taken.
 void refuseAmbiguous(const Part& part, const std::string& wanted) {
   constexpr std::size_t kMost = 12;

@@ -30,9 +30,9 @@ class BulkTest : public PlayedLinkTest {
     return std::make_unique<Link>(makeBulkTransport(), wire, std::move(s));
   }
 
-  /// The motors go off, the trouble has this name, and once `mend` was called the arm pushes again.
+  /// The motors go off, the trouble has this name, and once `repair` was called the arm pushes again.
   void expectTroubleAndRecovery(const std::function<void(PlayedUsb&)>& spoil, Trouble trouble,
-                                const std::function<void(PlayedUsb&)>& mend) {
+                                const std::function<void(PlayedUsb&)>& repair) {
     PlayedUsb device(testbed, 0, left);
     device.plug();
     auto link = make();
@@ -43,7 +43,7 @@ class BulkTest : public PlayedLinkTest {
     spoil(device);
     EXPECT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == trouble; })) << describe(trouble);
     EXPECT_TRUE(pushUntil(*link, [&](const Sample&) { return !device.pushed(); })) << "motors stay on";
-    mend(device);
+    repair(device);
     EXPECT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == Trouble::kNone && device.pushed(); }));
     link->close();
     EXPECT_FALSE(device.pushed()) << "motors are off at the end";

@@ -41,7 +41,7 @@ class Hand {
   Vector3d at_, force_;
 };
 
-/// Tells whether a closed motion took more than `least` [J] from the hand, and gave it hardly
+/// Returns whether a closed motion took more than `least` [J] from the hand, and gave it hardly
 /// any energy and no push aside.
 testing::AssertionResult givesLittle(const Hand& hand, double least) {
   if (hand.taken > least && hand.given - hand.taken < .03 * hand.taken && hand.aside < 1e-3)

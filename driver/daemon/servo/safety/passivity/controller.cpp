@@ -54,15 +54,15 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
     started_ = position.allFinite();
     return force;  // a force that is not finite is returned too; the limiter ends it
   }
-  const Eigen::Vector3d way = started_ ? Eigen::Vector3d(position - position_) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d motion = started_ ? Eigen::Vector3d(position - position_) : Eigen::Vector3d::Zero();
   position_ = position;
   started_ = true;
-  energy_ += device_damping_ * way.squaredNorm() / dt - held_.dot(way);
-  dissipated_ -= added_.dot(way);
+  energy_ += device_damping_ * motion.squaredNorm() / dt - held_.dot(motion);
+  dissipated_ -= added_.dot(motion);
   if (std::isfinite(exchange.supplied)) energy_ += share_ * exchange.supplied;
   if (exchange.recoverable >= 0) energy_ = std::min(energy_, exchange.recoverable);
-  follow(moved(way, dt, exchange.pushed), dt);
-  recordSwing(way, dt, exchange);
+  follow(moved(motion, dt, exchange.pushed), dt);
+  recordSwing(motion, dt, exchange);
   if (!std::isfinite(energy_) || !std::isfinite(swing_) || !velocity_.allFinite()) reset();
   if (force.squaredNorm() == 0) leaveContact(dt);
   settle(force, dt);
@@ -73,27 +73,27 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
   return result;
 }
 
-void PassivityController::follow(const Eigen::Vector3d& way, double dt) noexcept {
+void PassivityController::follow(const Eigen::Vector3d& motion, double dt) noexcept {
   const double share = part(dt, kSmoothing);
-  smoothed_ += share * (way / dt - smoothed_);
+  smoothed_ += share * (motion / dt - smoothed_);
   velocity_ += share * (smoothed_ - velocity_);
 }
 
-/// Returns the part of the motion `way` that damping must resist. While a program pushes, encoder steps to and fro do
+/// Returns the part of `motion` that damping must resist. While a program pushes, encoder steps to and fro do
 /// not count: the damping lags behind such a flicker, and would feed it instead of ending it.
-Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept {
+Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& motion, double dt, bool pushed) noexcept {
   if (!pushed || (position_ - rest_).norm() > kPlay * resolution_) {
     rest_ = position_;
     lively_ = 1;
-    return way;
+    return motion;
   }
   lively_ -= part(dt, kLively) * lively_;
-  return lively_ * way;
+  return lively_ * motion;
 }
 
 /// Keeps a second energy sum, of force and motion without their slow parts. The same high-pass filter acts on both, so
 /// what is passive stays passive in this sum, and what creates energy by swinging creates it here too.
-void PassivityController::recordSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept {
+void PassivityController::recordSwing(const Eigen::Vector3d& motion, double dt, const Exchange& exchange) noexcept {
   if (!exchange.pushed || !pushed_) {
     if (pushed_) energy_ = std::max(energy_, swing_);  // after a push, only the debt of the swinging part remains
     swing_ = std::min(0.0, energy_);                   // a new push does not pay an earlier debt
@@ -104,8 +104,8 @@ void PassivityController::recordSwing(const Eigen::Vector3d& way, double dt, con
   }
   const double share = part(dt, kSteady);
   steady_ += share * (held_ - steady_);
-  drift_ += share * (way / dt - drift_);
-  const Eigen::Vector3d swung = way - dt * drift_;
+  drift_ += share * (motion / dt - drift_);
+  const Eigen::Vector3d swung = motion - dt * drift_;
   swing_ += device_damping_ * swung.squaredNorm() / dt - (held_ - steady_).dot(swung);
   if (std::isfinite(exchange.supplied)) swing_ += share_ * exchange.supplied;
   swing_ *= 1 - part(dt, kSwingMemory);

@@ -53,9 +53,9 @@ class PassivityController {
   double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] energy that the controller took so far
 
  private:
-  void follow(const Eigen::Vector3d& way, double dt) noexcept;
-  Eigen::Vector3d moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept;
-  void recordSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept;
+  void follow(const Eigen::Vector3d& motion, double dt) noexcept;
+  Eigen::Vector3d moved(const Eigen::Vector3d& motion, double dt, bool pushed) noexcept;
+  void recordSwing(const Eigen::Vector3d& motion, double dt, const Exchange& exchange) noexcept;
   void leaveContact(double dt) noexcept;
   void settle(const Eigen::Vector3d& force, double dt) noexcept;
   Eigen::Vector3d resistance(const Eigen::Vector3d& force) const noexcept;

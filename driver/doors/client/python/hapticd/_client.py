@@ -112,7 +112,7 @@ class Client:
                 time.sleep(pause)
 
     def alive(self) -> bool:
-        """Tells whether the daemon runs: a running daemon holds the lock on its name."""
+        """Returns whether the daemon runs: a running daemon holds the lock on its name."""
         try:
             with open(self._base + ".lock", "rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -132,13 +132,13 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """Tells whether the daemon of this client has ended, even if another daemon has its name now. It also does so after
+        """Returns whether the daemon of this client has ended, even if another daemon has its name now. It also is after
         `close`."""
         return (self._line.closed() or self._line.ended()) and (
             self._box.ended() or self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
-        """Tells whether the daemon was killed or crashed. It is False while the daemon runs, and after it ended in order
+        """Returns whether the daemon was killed or crashed. It is False while the daemon runs, and after it ended in order
         (`hapticd ctl stop`, Ctrl-C, the end of `--for`)."""
         # An older daemon does not note its end, but it removes its socket if it ends in order.
         return self.ended() and not self._box.ended() and os.path.exists(self._base + ".sock")

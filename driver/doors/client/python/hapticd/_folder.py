@@ -11,7 +11,7 @@ from ._error import HapticdError
 
 
 def _in_memory(folder: str) -> bool:
-    """Tells whether the folder is on a file system in memory, as the daemon requires for its runtime folder."""
+    """Returns whether the folder is on a file system in memory, as the daemon requires for its runtime folder."""
     try:
         with open("/proc/self/mountinfo", encoding="utf-8") as mounts:
             best, kind = "", ""

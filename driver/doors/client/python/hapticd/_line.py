@@ -96,11 +96,11 @@ class Line:
             self._begun_with += fds
 
     def closed(self) -> bool:
-        """Tells whether this end is closed."""
+        """Returns whether this end is closed."""
         return self._socket.fileno() < 0
 
     def ended(self) -> bool:
-        """Tells whether the other end is closed. The kernel reports this at once, even if the process was killed."""
+        """Returns whether the other end is closed. The kernel reports this at once, even if the process was killed."""
         if self.closed():
             return False
         socket_ = select.poll()

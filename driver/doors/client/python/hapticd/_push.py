@@ -27,7 +27,7 @@ Force = Sequence[float]
 
 
 def _stopped(error: Optional[BaseException]) -> bool:
-    """Tells whether the error is that the daemon ended in order, which is no failure of the program."""
+    """Returns whether the error is that the daemon ended in order, which is no failure of the program."""
     return isinstance(error, HapticdError) and error.stopped
 
 

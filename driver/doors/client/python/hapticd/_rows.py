@@ -182,7 +182,7 @@ class BlackBox:
         return places
 
     def ended(self) -> bool:
-        """Tells whether the daemon has noted here that it ended in order."""
+        """Returns whether the daemon has noted here that it ended in order."""
         return bool(_CLOSED.unpack_from(self._head, _CLOSED_AT)[0])
 
     def close(self) -> None:

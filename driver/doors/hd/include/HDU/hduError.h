@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hduError.h - prints errors and tells their kinds apart. C89 and newer, C++98 and newer. */
+/* hduError.h - prints errors and distinguishes their kinds. C89 and newer, C++98 and newer. */
 #ifndef HAPTICD_HDU_ERROR_H
 #define HAPTICD_HDU_ERROR_H
 #include <HD/hd.h>
@@ -20,7 +20,7 @@ HAPTICD_HDU_UNUSED static void hduPrintError(FILE* stream, const HDErrorInfo* er
   fflush(stream);
 }
 
-/* Tells whether the error is about forces, so that the program can go on. */
+/* Returns whether the error is about forces, so that the program can go on. */
 HAPTICD_HDU_UNUSED static HDboolean hduIsForceError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_FORCE_ERROR:
@@ -34,7 +34,7 @@ HAPTICD_HDU_UNUSED static HDboolean hduIsForceError(const HDErrorInfo* error) {
   }
 }
 
-/* Tells whether the error is one of the device or the scheduler, so that the servo loop cannot go on. */
+/* Returns whether the error is one of the device or the scheduler, so that the servo loop cannot go on. */
 HAPTICD_HDU_UNUSED static HDboolean hduIsSchedulerError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_COMM_ERROR:

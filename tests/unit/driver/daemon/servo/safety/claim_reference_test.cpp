@@ -48,7 +48,7 @@ class Reference {
 
  private:
   double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) {
-    double way = (step.p_model - last_.p_model).norm();
+    double moved = (step.p_model - last_.p_model).norm();
     double speed = std::max(step.velocity.norm(), last_.velocity.norm());
     double change = (step.velocity - last_.velocity).norm(), turned = 0;
     if (step.turn != nullptr) {
@@ -58,18 +58,18 @@ class Reference {
     }
     if (bounds.moves_itself) {
       const double own = (step.p_world - last_.p_world).norm();
-      way = std::min(way, own + ownWay(step, dt));
+      moved = std::min(moved, own + ownMotion(step, dt));
       if (dt > 0) speed = std::min(speed, own / dt + Claim::kOwnSpeed);
       change = std::min(change, speed);
       turned = std::min(turned, Claim::kOwnTurn * dt * explained_.norm());
     }
-    if (dt > 0) speed = std::max(speed, way / dt);
+    if (dt > 0) speed = std::max(speed, moved / dt);
     const double stiffness = bounds.stiffness > 0 ? bounds.stiffness : Claim::kUnclaimed;
-    return Claim::kMargin * stiffness * way +
+    return Claim::kMargin * stiffness * moved +
            std::max(Claim::kDamping * change, Claim::kMargin * bounds.damping * speed) +
            (bounds.moves_itself ? turned : 0);
   }
-  double ownWay(const ClaimStep& step, double dt) const {
+  double ownMotion(const ClaimStep& step, double dt) const {
     const double along = std::min((step.origin - last_.origin).norm(), Claim::kOwnSpeed * dt);
     if (step.turn == nullptr) return along;
     const Vector3d arm = step.p_world - step.origin;
@@ -107,11 +107,11 @@ class Wanderer {
     stiffness_ = std::max(100.0, bounds.stiffness);
   }
   const ClaimStep& next() {
-    const double way = std::pow(10, -7 + 4 * share());
-    step_.p_world += way * any();
+    const double moved = std::pow(10, -7 + 4 * share());
+    step_.p_world += moved * any();
     step_.in = chance(200) ? HSP_IN_INVALID : chance(200) ? HSP_IN_JUMP : 0;
     step_.out = chance(20) ? 0 : HSP_OUT_TRACED;
-    step_.velocity = way * 1e3 * any();
+    step_.velocity = moved * 1e3 * any();
     if (chance(30)) normal_ = any().normalized();
     step_.normal = normal_;
     if (turns_) {
@@ -185,7 +185,7 @@ TEST(Claim, TakesASecondLookAtWhatIsLittleMoreThanTheStiffnessExplains) {
     step.force = {0, part * Claim::kMargin * 1000 * 1e-4, 0};
     claim.check(step, bounds, 1e-6, held);
     ASSERT_FALSE(held);
-    step.force = {0, 100, 0};  // without a way: what was followed, and a click
+    step.force = {0, 100, 0};  // without a motion: what was followed, and a click
     const double followed = claim.check(step, bounds, 1e-6, held).y() - Claim::kStep;
     EXPECT_NEAR(followed, std::min(part, 1.0), 3e-4) << part;
   }
