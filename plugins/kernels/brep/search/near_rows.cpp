@@ -21,50 +21,33 @@ void NearRows<Choice>::add(const BodyTree& body, int first) noexcept {
   for (int i = first; i <= last; ++i)
     children_[static_cast<std::size_t>(i)] = candidates_[static_cast<std::size_t>(i)].child;
   known_[at] = Float4{};
-  if constexpr (std::is_same_v<Shape, RowDisc>) {
-    fours_[at] = fourOf(shape(0), shape(1), shape(2), shape(3));
-    for (int lane = last - first + 1; lane < 4; ++lane) putNothing(lane, fours_[at]);
-  } else {
-    fours_[at] = emptyFour(Shape{});
-    for (int lane = 0; lane <= last - first; ++lane) put(shape(lane), lane, fours_[at]);
-  }
+  fours_[at] = fourOf(shape(0), shape(1), shape(2), shape(3));
+  for (int lane = last - first + 1; lane < 4; ++lane) putNothing(lane, fours_[at]);
 }
 
-/// Adds a shape to the candidates, if it is within reach. Returns false if there are too many.
+/// Adds the listed shapes that are within reach to the candidates, four at once. Returns false if there are too many.
 template <class Choice>
-bool NearRows<Choice>::consider(const Candidate& next, double reach2, double& beyond2) noexcept {
-  const auto bound = static_cast<double>(next.bound2);
-  if (!(bound <= reach2)) {
-    beyond2 = std::min(beyond2, bound);
-    return true;
-  }
-  if (candidate_count_ == Limits::kMostCandidates) return false;
-  candidates_[static_cast<std::size_t>(candidate_count_++)] = next;
-  return true;
-}
-
-/// Considers the discs of the rows of a mesh, four at once.
-template <class Choice>
-bool NearRows<Choice>::considerDiscs(const BodyTree& body, const BoxProbe& probe, double reach2,
+bool NearRows<Choice>::considerListed(const BodyTree& body, const BoxProbe& probe, double reach2,
                                      double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
   Float4 beyond = kEndless4;
-  const int count = rows_of_tree_count_;
+  const std::vector<Shape>& shapes = body.template shapes<Shape>();
+  const int count = listed_count_;
   for (int r = 0; r < count; ++r) {
-    const Candidate& row = rows_of_tree_[static_cast<std::size_t>(r)];
-    __builtin_prefetch(&body.discs[static_cast<std::size_t>(row.row)]);
+    const Candidate& row = listed_[static_cast<std::size_t>(r)];
+    __builtin_prefetch(&shapes[static_cast<std::size_t>(row.row)]);
     __builtin_prefetch(&body.elements[BoxTree::rowOf(row.child).first]);
   }
   for (int r = 0; r < count; r += 4) {
     if (candidate_count_ > Limits::kMostCandidates - 4) return false;
-    const Candidate* const four = &rows_of_tree_[static_cast<std::size_t>(r)];
-    const auto disc = [&](int i) -> const RowDisc& {
-      return body.discs[static_cast<std::size_t>(four[r + i < count ? i : 0].row)];
+    const Candidate* const four = &listed_[static_cast<std::size_t>(r)];
+    const auto shape = [&](int i) -> const Shape& {
+      return shapes[static_cast<std::size_t>(four[r + i < count ? i : 0].row)];
     };
     const Float4 boxes{four[0].bound2, four[1].bound2, four[2].bound2, four[3].bound2};
-    const Float4 discs = rowDistances(fourOf(disc(0), disc(1), disc(2), disc(3)), probe);
+    const Float4 own = rowDistances(fourOf(shape(0), shape(1), shape(2), shape(3)), probe);
     const Test4 used = Test4{0, 1, 2, 3} < Test4{} + (count - r);
-    const Float4 bounds = discs > boxes ? discs : boxes;
+    const Float4 bounds = own > boxes ? own : boxes;
     const Test4 within = (bounds <= limit) & used;
     beyond = lesser(within | ~used ? kEndless4 : bounds, beyond);
     for (int i = 0; i < 4; ++i) {
@@ -105,47 +88,40 @@ bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, do
       for (std::size_t i = 0; i < 4; ++i) {
         const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
         nodes[static_cast<std::size_t>(count)] = child;
-        rows_of_tree_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
+        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
         count -= within[k][i] & ~is_row;
         rows -= within[k][i] & is_row;
       }
-    if (count > Limits::kMostNodes || rows > Limits::kMostRowsOfTree) return false;
+    if (count > Limits::kMostNodes || rows > Limits::kMostListed) return false;
     for (int k = kAtOnce; k < 2 * kAtOnce; ++k)
       body.fetchAhead(nodes[static_cast<std::size_t>(std::min(next + k, count - 1))], 0);
   }
-  rows_of_tree_count_ = rows;
+  listed_count_ = rows;
   beyond2 = std::min(beyond2, static_cast<double>(leastOf(beyond)));
   return true;
 }
 
-/// Considers each element of a row of the tree.
+/// Lists the elements of a row of the tree. Returns false if there are too many.
 template <class Choice>
-bool NearRows<Choice>::considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
-                                   double& beyond2) noexcept {
-  const auto boundOf = [&](std::int32_t shape) {
-    return std::max(row.bound2, rowDistance(body.template shapes<Shape>()[static_cast<std::size_t>(shape)], probe));
-  };
-  const ElementRow elements = BoxTree::rowOf(row.child);
-  looks_ += static_cast<int>(elements.count);
-  if (looks_ > Limits::kMostLooks) return false;
-  for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
-    const auto place = static_cast<std::int32_t>(i);
-    if (!consider({boundOf(place), place, BoxTree::codeOf({i, 1})}, reach2, beyond2)) return false;
+bool NearRows<Choice>::listElements(const BodyTree& body, float bound2, std::int32_t child) noexcept {
+  const ElementRow row = BoxTree::rowOf(child);
+  if (listed_count_ + static_cast<int>(row.count) > Limits::kMostListed) return false;
+  for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
+    __builtin_prefetch(&body.rows[i]);
+    listed_[static_cast<std::size_t>(listed_count_++)] = {bound2, static_cast<std::int32_t>(i),
+                                                          BoxTree::codeOf({i, 1})};
   }
   return true;
 }
 
-/// Collects the rows within reach as candidates. `beyond2` is lowered to the least bound of all other rows.
+/// Lists the elements of the rows whose boxes are within reach.
 template <class Choice>
-bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
-                               double& beyond2) noexcept {
-  const BoxProbe probe(body.tree, p);
-  candidate_count_ = looks_ = 0;
-  if constexpr (std::is_same_v<Shape, RowDisc>)
-    return openBoxes(body, probe, reach2, beyond2) && considerDiscs(body, probe, reach2, beyond2);
+bool NearRows<Choice>::openBoxesInTurn(const BodyTree& body, const BoxProbe& probe, double reach2,
+                                       double& beyond2) noexcept {
   std::array<std::int32_t, BoxTree::kMaxStack> stack;
   int depth = 0, nodes = 0;
   stack[static_cast<std::size_t>(depth++)] = 0;
+  listed_count_ = 0;
   while (depth > 0) {
     if (++nodes > Limits::kMostNodes) return false;
     const BoxNode& node = body.tree.node(stack[static_cast<std::size_t>(--depth)]);
@@ -157,12 +133,23 @@ bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, d
       } else if (child >= 0) {
         stack[static_cast<std::size_t>(depth++)] = child;
         body.fetchAhead(child, 0);
-      } else if (!considerRow(body, probe, {bounds[i], node.row[i], child}, reach2, beyond2)) {
+      } else if (!listElements(body, bounds[i], child)) {
         return false;
       }
     }
   }
   return true;
+}
+
+/// Collects the rows within reach as candidates. `beyond2` is lowered to the least bound of all other rows.
+template <class Choice>
+bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
+                               double& beyond2) noexcept {
+  const BoxProbe probe(body.tree, p);
+  candidate_count_ = 0;
+  const bool listed = std::is_same_v<Shape, RowDisc> ? openBoxes(body, probe, reach2, beyond2)
+                                                     : openBoxesInTurn(body, probe, reach2, beyond2);
+  return listed && considerListed(body, probe, reach2, beyond2);
 }
 
 template <class Choice>
