@@ -65,7 +65,7 @@ bool NearRows<Choice>::considerListed(const BodyTree& body, const BoxProbe& prob
 template <class Choice>
 bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
-  constexpr int kAtOnce = 4;
+  constexpr int kAtOnce = Limits::kOpenAtOnce;
   Float4 beyond = kEndless4;
   std::array<std::int32_t, Limits::kMostNodes + 4 * kAtOnce> nodes;
   nodes[0] = 0;  // the root
@@ -88,7 +88,9 @@ bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, do
       for (std::size_t i = 0; i < 4; ++i) {
         const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
         nodes[static_cast<std::size_t>(count)] = child;
-        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
+        const auto shape = std::is_same_v<Shape, RowDisc> ? open[k]->row[i]
+                                                          : static_cast<std::int32_t>(BoxTree::rowOf(child).first);
+        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], shape, child};
         count -= within[k][i] & ~is_row;
         rows -= within[k][i] & is_row;
       }
@@ -101,43 +103,23 @@ bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, do
   return true;
 }
 
-/// Lists the elements of a row of the tree. Returns false if there are too many.
+/// Lists the elements of the listed rows instead of the rows. Returns false if there are too many.
 template <class Choice>
-bool NearRows<Choice>::listElements(const BodyTree& body, float bound2, std::int32_t child) noexcept {
-  const ElementRow row = BoxTree::rowOf(child);
-  if (listed_count_ + static_cast<int>(row.count) > Limits::kMostListed) return false;
-  for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
-    __builtin_prefetch(&body.rows[i]);
-    listed_[static_cast<std::size_t>(listed_count_++)] = {bound2, static_cast<std::int32_t>(i),
-                                                          BoxTree::codeOf({i, 1})};
+bool NearRows<Choice>::listElements(const BodyTree& body) noexcept {
+  if (static_cast<std::size_t>(body.tree.rowCount()) == body.elements.size()) return true;  // they are the same
+  std::array<Candidate, Limits::kMostListed + 16> elements;
+  int count = 0;
+  for (int r = 0; r < listed_count_; ++r) {
+    const Candidate& listed = listed_[static_cast<std::size_t>(r)];
+    const ElementRow row = BoxTree::rowOf(listed.child);
+    if (count + static_cast<int>(row.count) > Limits::kMostListed) return false;
+    for (std::uint32_t i = 0; i < BodyTree::kElementRow; ++i)
+      elements[static_cast<std::size_t>(count) + i] = {listed.bound2, static_cast<std::int32_t>(row.first + i),
+                                                       BoxTree::codeOf({row.first + i, 1})};
+    count += static_cast<int>(row.count);
   }
-  return true;
-}
-
-/// Lists the elements of the rows whose boxes are within reach.
-template <class Choice>
-bool NearRows<Choice>::openBoxesInTurn(const BodyTree& body, const BoxProbe& probe, double reach2,
-                                       double& beyond2) noexcept {
-  std::array<std::int32_t, BoxTree::kMaxStack> stack;
-  int depth = 0, nodes = 0;
-  stack[static_cast<std::size_t>(depth++)] = 0;
-  listed_count_ = 0;
-  while (depth > 0) {
-    if (++nodes > Limits::kMostNodes) return false;
-    const BoxNode& node = body.tree.node(stack[static_cast<std::size_t>(--depth)]);
-    const Float4 bounds = boxDistances(node, probe);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::int32_t child = node.child[i];
-      if (!(static_cast<double>(bounds[i]) <= reach2)) {
-        beyond2 = std::min(beyond2, static_cast<double>(bounds[i]));
-      } else if (child >= 0) {
-        stack[static_cast<std::size_t>(depth++)] = child;
-        body.fetchAhead(child, 0);
-      } else if (!listElements(body, bounds[i], child)) {
-        return false;
-      }
-    }
-  }
+  std::copy(elements.begin(), elements.begin() + count, listed_.begin());
+  listed_count_ = count;
   return true;
 }
 
@@ -147,9 +129,10 @@ bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, d
                                double& beyond2) noexcept {
   const BoxProbe probe(body.tree, p);
   candidate_count_ = 0;
-  const bool listed = std::is_same_v<Shape, RowDisc> ? openBoxes(body, probe, reach2, beyond2)
-                                                     : openBoxesInTurn(body, probe, reach2, beyond2);
-  return listed && considerListed(body, probe, reach2, beyond2);
+  if (!openBoxes(body, probe, reach2, beyond2)) return false;
+  if constexpr (std::is_same_v<Shape, RowBox>)
+    if (!listElements(body)) return false;
+  return considerListed(body, probe, reach2, beyond2);
 }
 
 template <class Choice>

@@ -17,6 +17,7 @@ struct ElementLimits {
   static constexpr int kMostFours = 8;         ///< most groups of four rows
   static constexpr int kMostCandidates = 128;  ///< most rows within reach, from which the nearest are taken
   static constexpr int kMostNodes = 32;        ///< most nodes of the tree that gather() examines
+  static constexpr int kOpenAtOnce = 2;        ///< nodes that gather() opens at once
   static constexpr int kMostListed = 80;       ///< most shapes that gather() measures
   static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
   /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
@@ -27,8 +28,8 @@ struct ElementLimits {
 /// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
   using Shape = RowDisc;
-  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kMostListed = 192, kFew = 16,
-                       kMany = 32;
+  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kOpenAtOnce = 4, kMostListed = 192,
+                       kFew = 16, kMany = 32;
   static constexpr double kWorthIt = 2;
   static constexpr bool kLearns = false;
 };
@@ -83,8 +84,7 @@ class NearRows {
     float bound2;
     std::int32_t row, child;
   };
-  bool listElements(const BodyTree& body, float bound2, std::int32_t child) noexcept;
-  bool openBoxesInTurn(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
+  bool listElements(const BodyTree& body) noexcept;
   bool considerListed(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
   bool openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
   bool collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2, double& beyond2) noexcept;
