@@ -51,14 +51,6 @@ struct alignas(64) FourRowBoxes {
   Float4 focus[2], inner, outer;
 };
 
-/// [rt] Returns four unused places, which are farther away than any box.
-inline FourRowBoxes emptyFour(const RowBox&) noexcept {
-  FourRowBoxes boxes{};
-  boxes.half[0] = Float4{} - RowBox::kWhole;
-  boxes.outer = Float4{} + RowBox::kWhole;
-  return boxes;
-}
-
 /// [rt] Makes place `lane` of four unused.
 inline void putNothing(int lane, FourRowBoxes& to) noexcept {
   to.half[0][lane] = -RowBox::kWhole;

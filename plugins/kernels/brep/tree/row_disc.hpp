@@ -30,23 +30,6 @@ struct alignas(64) FourDiscs {
 /// float.
 inline constexpr float kUnused = 1e18F;
 
-/// [rt] Returns four unused places.
-inline FourDiscs emptyFour(const RowDisc&) noexcept {
-  FourDiscs discs{};
-  discs.center[0] = Float4{} + kUnused;
-  return discs;
-}
-
-/// [rt] Writes a disc to place `lane` of four.
-inline void put(const RowDisc& disc, int lane, FourDiscs& to) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    to.center[axis][lane] = disc.center[axis];
-    to.normal[axis][lane] = disc.normal[axis];
-  }
-  to.half[lane] = disc.half;
-  to.radius[lane] = disc.radius;
-}
-
 /// [rt] Makes place `lane` of four unused.
 inline void putNothing(int lane, FourDiscs& to) noexcept {
   to.center[0][lane] = kUnused;
