@@ -89,30 +89,15 @@ void Search::adaptReach(const Near& near, const Vector3d& p, double distance) no
     reach_ = std::min(reach_, 1.2 * std::max(near.beyond(p) - distance, 0.0));
 }
 
-/// Gathers the rows around p again.
+/// Gathers the rows around p again. If the probe would leave them too soon, it gathers those that this tick needs: with
+/// them, a tick takes less time than with a search from the root.
 template <class Near>
 bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distance) noexcept {
   using Limits = typename Near::Limits;
-  if (!(reach_ >= Limits::kWorthIt * way)) {
-    reach_ = reach_ > 0 ? 1.01 * reach_ : Limits::kWorthIt * way;
-    return false;
-  }
-  if (!gatherFrom(model_, near, p, distance + reach_)) {
-    reach_ *= 0.5;
-    return false;
-  }
-  adaptReach(near, p, distance);
-  return true;
-}
-
-/// Gathers the triangles around p again. If the probe would leave them too soon, it gathers those that this tick needs:
-/// with them, a tick takes less time than with a search from the root.
-template <>
-bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, double distance) noexcept {
   constexpr int kMostCrowdedTicks = 100;  // ticks until it looks again whether few rows are near
-  const bool lasts = reach_ >= TriangleLimits::kWorthIt * way;
+  const bool lasts = reach_ >= Limits::kWorthIt * way;
   if (!lasts) {
-    reach_ = reach_ > 0 ? 1.01 * reach_ : TriangleLimits::kWorthIt * way;
+    reach_ = reach_ > 0 ? 1.01 * reach_ : Limits::kWorthIt * way;
     if (crowded_ticks_ > 0) {
       --crowded_ticks_;
       return false;
@@ -123,7 +108,7 @@ bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, doub
   gathered_now_ = true;
   const bool gathered = gatherFrom(model_, near, p, reach);
   if (!lasts) {
-    const bool crowded = !gathered || near.rows() > TriangleLimits::kMany;
+    const bool crowded = !gathered || near.rows() > Limits::kMany;
     crowded_wait_ = crowded ? std::min(2 * crowded_wait_ + 1, kMostCrowdedTicks) : 0;
     crowded_ticks_ = crowded_wait_;
   } else if (!gathered) {

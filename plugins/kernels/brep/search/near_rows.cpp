@@ -21,50 +21,33 @@ void NearRows<Choice>::add(const BodyTree& body, int first) noexcept {
   for (int i = first; i <= last; ++i)
     children_[static_cast<std::size_t>(i)] = candidates_[static_cast<std::size_t>(i)].child;
   known_[at] = Float4{};
-  if constexpr (std::is_same_v<Shape, RowDisc>) {
-    fours_[at] = fourOf(shape(0), shape(1), shape(2), shape(3));
-    for (int lane = last - first + 1; lane < 4; ++lane) putNothing(lane, fours_[at]);
-  } else {
-    fours_[at] = emptyFour(Shape{});
-    for (int lane = 0; lane <= last - first; ++lane) put(shape(lane), lane, fours_[at]);
-  }
+  fours_[at] = fourOf(shape(0), shape(1), shape(2), shape(3));
+  for (int lane = last - first + 1; lane < 4; ++lane) putNothing(lane, fours_[at]);
 }
 
-/// Adds a shape to the candidates, if it is within reach. Returns false if there are too many.
+/// Adds the listed shapes that are within reach to the candidates, four at once. Returns false if there are too many.
 template <class Choice>
-bool NearRows<Choice>::consider(const Candidate& next, double reach2, double& beyond2) noexcept {
-  const auto bound = static_cast<double>(next.bound2);
-  if (!(bound <= reach2)) {
-    beyond2 = std::min(beyond2, bound);
-    return true;
-  }
-  if (candidate_count_ == Limits::kMostCandidates) return false;
-  candidates_[static_cast<std::size_t>(candidate_count_++)] = next;
-  return true;
-}
-
-/// Considers the discs of the rows of a mesh, four at once.
-template <class Choice>
-bool NearRows<Choice>::considerDiscs(const BodyTree& body, const BoxProbe& probe, double reach2,
+bool NearRows<Choice>::considerListed(const BodyTree& body, const BoxProbe& probe, double reach2,
                                      double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
   Float4 beyond = kEndless4;
-  const int count = rows_of_tree_count_;
+  const std::vector<Shape>& shapes = body.template shapes<Shape>();
+  const int count = listed_count_;
   for (int r = 0; r < count; ++r) {
-    const Candidate& row = rows_of_tree_[static_cast<std::size_t>(r)];
-    __builtin_prefetch(&body.discs[static_cast<std::size_t>(row.row)]);
+    const Candidate& row = listed_[static_cast<std::size_t>(r)];
+    __builtin_prefetch(&shapes[static_cast<std::size_t>(row.row)]);
     __builtin_prefetch(&body.elements[BoxTree::rowOf(row.child).first]);
   }
   for (int r = 0; r < count; r += 4) {
     if (candidate_count_ > Limits::kMostCandidates - 4) return false;
-    const Candidate* const four = &rows_of_tree_[static_cast<std::size_t>(r)];
-    const auto disc = [&](int i) -> const RowDisc& {
-      return body.discs[static_cast<std::size_t>(four[r + i < count ? i : 0].row)];
+    const Candidate* const four = &listed_[static_cast<std::size_t>(r)];
+    const auto shape = [&](int i) -> const Shape& {
+      return shapes[static_cast<std::size_t>(four[r + i < count ? i : 0].row)];
     };
     const Float4 boxes{four[0].bound2, four[1].bound2, four[2].bound2, four[3].bound2};
-    const Float4 discs = rowDistances(fourOf(disc(0), disc(1), disc(2), disc(3)), probe);
+    const Float4 own = rowDistances(fourOf(shape(0), shape(1), shape(2), shape(3)), probe);
     const Test4 used = Test4{0, 1, 2, 3} < Test4{} + (count - r);
-    const Float4 bounds = discs > boxes ? discs : boxes;
+    const Float4 bounds = own > boxes ? own : boxes;
     const Test4 within = (bounds <= limit) & used;
     beyond = lesser(within | ~used ? kEndless4 : bounds, beyond);
     for (int i = 0; i < 4; ++i) {
@@ -82,7 +65,7 @@ bool NearRows<Choice>::considerDiscs(const BodyTree& body, const BoxProbe& probe
 template <class Choice>
 bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
-  constexpr int kAtOnce = 4;
+  constexpr int kAtOnce = Limits::kOpenAtOnce;
   Float4 beyond = kEndless4;
   std::array<std::int32_t, Limits::kMostNodes + 4 * kAtOnce> nodes;
   nodes[0] = 0;  // the root
@@ -105,33 +88,38 @@ bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, do
       for (std::size_t i = 0; i < 4; ++i) {
         const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
         nodes[static_cast<std::size_t>(count)] = child;
-        rows_of_tree_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
+        const auto shape = std::is_same_v<Shape, RowDisc> ? open[k]->row[i]
+                                                          : static_cast<std::int32_t>(BoxTree::rowOf(child).first);
+        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], shape, child};
         count -= within[k][i] & ~is_row;
         rows -= within[k][i] & is_row;
       }
-    if (count > Limits::kMostNodes || rows > Limits::kMostRowsOfTree) return false;
+    if (count > Limits::kMostNodes || rows > Limits::kMostListed) return false;
     for (int k = kAtOnce; k < 2 * kAtOnce; ++k)
       body.fetchAhead(nodes[static_cast<std::size_t>(std::min(next + k, count - 1))], 0);
   }
-  rows_of_tree_count_ = rows;
+  listed_count_ = rows;
   beyond2 = std::min(beyond2, static_cast<double>(leastOf(beyond)));
   return true;
 }
 
-/// Considers each element of a row of the tree.
+/// Lists the elements of the listed rows instead of the rows. Returns false if there are too many.
 template <class Choice>
-bool NearRows<Choice>::considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
-                                   double& beyond2) noexcept {
-  const auto boundOf = [&](std::int32_t shape) {
-    return std::max(row.bound2, rowDistance(body.template shapes<Shape>()[static_cast<std::size_t>(shape)], probe));
-  };
-  const ElementRow elements = BoxTree::rowOf(row.child);
-  looks_ += static_cast<int>(elements.count);
-  if (looks_ > Limits::kMostLooks) return false;
-  for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
-    const auto place = static_cast<std::int32_t>(i);
-    if (!consider({boundOf(place), place, BoxTree::codeOf({i, 1})}, reach2, beyond2)) return false;
+bool NearRows<Choice>::listElements(const BodyTree& body) noexcept {
+  if (static_cast<std::size_t>(body.tree.rowCount()) == body.elements.size()) return true;  // they are the same
+  std::array<Candidate, Limits::kMostListed + 16> elements;
+  int count = 0;
+  for (int r = 0; r < listed_count_; ++r) {
+    const Candidate& listed = listed_[static_cast<std::size_t>(r)];
+    const ElementRow row = BoxTree::rowOf(listed.child);
+    if (count + static_cast<int>(row.count) > Limits::kMostListed) return false;
+    for (std::uint32_t i = 0; i < BodyTree::kElementRow; ++i)
+      elements[static_cast<std::size_t>(count) + i] = {listed.bound2, static_cast<std::int32_t>(row.first + i),
+                                                       BoxTree::codeOf({row.first + i, 1})};
+    count += static_cast<int>(row.count);
   }
+  std::copy(elements.begin(), elements.begin() + count, listed_.begin());
+  listed_count_ = count;
   return true;
 }
 
@@ -140,29 +128,11 @@ template <class Choice>
 bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
                                double& beyond2) noexcept {
   const BoxProbe probe(body.tree, p);
-  candidate_count_ = looks_ = 0;
-  if constexpr (std::is_same_v<Shape, RowDisc>)
-    return openBoxes(body, probe, reach2, beyond2) && considerDiscs(body, probe, reach2, beyond2);
-  std::array<std::int32_t, BoxTree::kMaxStack> stack;
-  int depth = 0, nodes = 0;
-  stack[static_cast<std::size_t>(depth++)] = 0;
-  while (depth > 0) {
-    if (++nodes > Limits::kMostNodes) return false;
-    const BoxNode& node = body.tree.node(stack[static_cast<std::size_t>(--depth)]);
-    const Float4 bounds = boxDistances(node, probe);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::int32_t child = node.child[i];
-      if (!(static_cast<double>(bounds[i]) <= reach2)) {
-        beyond2 = std::min(beyond2, static_cast<double>(bounds[i]));
-      } else if (child >= 0) {
-        stack[static_cast<std::size_t>(depth++)] = child;
-        body.fetchAhead(child, 0);
-      } else if (!considerRow(body, probe, {bounds[i], node.row[i], child}, reach2, beyond2)) {
-        return false;
-      }
-    }
-  }
-  return true;
+  candidate_count_ = 0;
+  if (!openBoxes(body, probe, reach2, beyond2)) return false;
+  if constexpr (std::is_same_v<Shape, RowBox>)
+    if (!listElements(body)) return false;
+  return considerListed(body, probe, reach2, beyond2);
 }
 
 template <class Choice>

@@ -17,8 +17,8 @@ struct ElementLimits {
   static constexpr int kMostFours = 8;         ///< most groups of four rows
   static constexpr int kMostCandidates = 128;  ///< most rows within reach, from which the nearest are taken
   static constexpr int kMostNodes = 32;        ///< most nodes of the tree that gather() examines
-  static constexpr int kMostRowsOfTree = 0;    ///< meshes: most rows of the tree whose boxes are within reach
-  static constexpr int kMostLooks = 80;        ///< most elements whose own boxes gather() measures
+  static constexpr int kOpenAtOnce = 2;        ///< nodes that gather() opens at once
+  static constexpr int kMostListed = 80;       ///< most shapes that gather() measures
   static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
   /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
   static constexpr double kWorthIt = 1.5;
@@ -28,7 +28,7 @@ struct ElementLimits {
 /// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
   using Shape = RowDisc;
-  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kMostRowsOfTree = 192, kMostLooks = 0,
+  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kOpenAtOnce = 4, kMostListed = 192,
                        kFew = 16, kMany = 32;
   static constexpr double kWorthIt = 2;
   static constexpr bool kLearns = false;
@@ -43,7 +43,7 @@ class NearRows {
  public:
   using Limits = Choice;
   using Shape = typename Limits::Shape;
-  using Four = decltype(emptyFour(Shape{}));
+  using Four = decltype(fourOf(Shape{}, Shape{}, Shape{}, Shape{}));
   static constexpr int kMostRows = 4 * Limits::kMostFours;
 
   /// [rt] Takes the rows of a body that may be within `reach` [m] of p (frame of the body); if they are too many, only
@@ -84,10 +84,8 @@ class NearRows {
     float bound2;
     std::int32_t row, child;
   };
-  bool consider(const Candidate& next, double reach2, double& beyond2) noexcept;
-  bool considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
-                   double& beyond2) noexcept;
-  bool considerDiscs(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
+  bool listElements(const BodyTree& body) noexcept;
+  bool considerListed(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
   bool openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
   bool collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2, double& beyond2) noexcept;
   void add(const BodyTree& body, int first) noexcept;
@@ -101,9 +99,8 @@ class NearRows {
   int rows_ = 0;
   std::array<Candidate, Limits::kMostCandidates + 1> candidates_;
   int candidate_count_ = 0;
-  std::array<Candidate, Limits::kMostRowsOfTree + 16> rows_of_tree_{};  ///< rows whose boxes are within reach
-  int rows_of_tree_count_ = 0;
-  int looks_ = 0;  ///< elements whose boxes were measured to gather the rows
+  std::array<Candidate, Limits::kMostListed + 16> listed_{};  ///< shapes in boxes of the tree that are within reach
+  int listed_count_ = 0;
 };
 
 using NearElements = NearRows<ElementLimits>;

@@ -158,13 +158,13 @@ class Search {
   NearTriangles near_triangles_;  ///< used if the model is one mesh, in its frame
   NearPlanes near_planes_;        ///< planes of near_triangles_, for a slow probe
   int last_plane_ = -1;           ///< likely number of the plane of the nearest triangle
-  bool gathered_now_ = false;     ///< near_triangles_ were gathered in this tick
+  bool gathered_now_ = false;     ///< rows were gathered in this tick
   double way_ = 0;                ///< [m] by which the probe has moved since the last tick
   NearPlaces near_places_;        ///< used if there are several placements, in the frame of the model
   int whole_nodes_ = 0;           ///< nodes that the last search of the whole model examined
   double reach_ = 0;              ///< [m] gathered rows may be farther than the nearest point by this
   int crowded_wait_ = 0;          ///< value at which crowded_ticks_ began
-  int crowded_ticks_ = 0;         ///< ticks in which near_triangles_ would be so many that a search is quicker
+  int crowded_ticks_ = 0;         ///< ticks in which so many rows would be near that a search is quicker
 };
 
 }  // namespace hapticd::brep

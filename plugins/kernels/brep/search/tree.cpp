@@ -42,12 +42,27 @@ void Search::examineElements(const Descent& at, const DescentEntry& entry, Run& 
   std::array<Candidate, BoxTree::kMaxRow> near;
   std::size_t count = 0;
   const ElementRow row = BoxTree::rowOf(entry.child);
-  for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
-    Candidate next{static_cast<double>(entry.bound), at.of_face != nullptr ? at.of_face[i] : i};
-    if (isFarther(at.body.rows[next.place], at.probe, run.within2(), next.bound, run.others2)) continue;
+  const std::uint32_t end = row.first + row.count;
+  const auto placeOf = [&](std::uint32_t i) { return at.of_face != nullptr ? at.of_face[i] : i; };
+  const auto consider = [&](std::uint32_t place, float box) {
+    const auto bound = static_cast<double>(std::max(entry.bound, box));
+    if (bound > run.within2()) {
+      run.others2 = std::min(run.others2, bound);
+      return;
+    }
     std::size_t k = count++;
-    for (; k > 0 && near[k - 1].bound > next.bound; --k) near[k] = near[k - 1];
-    near[k] = next;
+    for (; k > 0 && near[k - 1].bound > bound; --k) near[k] = near[k - 1];
+    near[k] = {bound, place};
+  };
+  if (row.count == 1) {
+    const std::uint32_t place = placeOf(row.first);
+    consider(place, rowDistance(at.body.rows[place], at.probe));
+  } else {
+    for (std::uint32_t i = row.first; i < end; i += 4) {
+      const auto box = [&](std::uint32_t k) -> const RowBox& { return at.body.rows[placeOf(std::min(i + k, end - 1))]; };
+      const Float4 boxes = rowDistances(fourOf(box(0), box(1), box(2), box(3)), at.probe);
+      for (std::uint32_t k = 0; k < 4 && i + k < end; ++k) consider(placeOf(i + k), boxes[k]);
+    }
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto [bound, place] = near[k];

@@ -33,6 +33,16 @@ inline void putLane(Float4& x, int lane, float number) noexcept {
   x = Test4{0, 1, 2, 3} == Test4{} + lane ? Float4{} + number : x;
 }
 
+/// [any] Writes the four numbers of each of four vectors side by side: to[i] has number i of each.
+inline void transpose(const Float4& a, const Float4& b, const Float4& c, const Float4& d, Float4* to) noexcept {
+  const Float4 ab0 = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+               cd0 = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  to[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+  to[1] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+  to[2] = __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
+  to[3] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7);
+}
+
 /// [any] Returns the lesser number of each lane.
 inline Float4 lesser(const Float4& a, const Float4& b) noexcept {
   return a < b ? a : b;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kernels/brep/tree/box_tree.hpp"
+#include "kernels/brep/tree/lanes.hpp"
 
 namespace hapticd::brep {
 
@@ -50,28 +51,26 @@ struct alignas(64) FourRowBoxes {
   Float4 focus[2], inner, outer;
 };
 
-/// [rt] Returns four unused places, which are farther away than any box.
-inline FourRowBoxes emptyFour(const RowBox&) noexcept {
-  FourRowBoxes boxes{};
-  boxes.half[0] = Float4{} - RowBox::kWhole;
-  boxes.outer = Float4{} + RowBox::kWhole;
-  return boxes;
+/// [rt] Makes place `lane` of four unused.
+inline void putNothing(int lane, FourRowBoxes& to) noexcept {
+  to.half[0][lane] = -RowBox::kWhole;
 }
 
-/// [rt] Writes a box to place `lane` of four.
-inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
-  const Float4 third = box.third();
-  for (int i = 0; i < 3; ++i) {
-    to.center[i][lane] = box.center[i];
-    to.axis[0][i][lane] = box.first[i];
-    to.axis[1][i][lane] = box.second[i];
-    to.axis[2][i][lane] = third[i];
-    to.half[i][lane] = box.half[i];
-  }
-  to.focus[0][lane] = box.center[3];
-  to.focus[1][lane] = box.half[3];
-  to.inner[lane] = box.first[3];
-  to.outer[lane] = box.second[3];
+/// [rt] Returns four boxes side by side.
+inline FourRowBoxes fourOf(const RowBox& a, const RowBox& b, const RowBox& c, const RowBox& d) noexcept {
+  Float4 first[4], second[4], center[4], half[4];
+  transpose(a.first, b.first, c.first, d.first, first);
+  transpose(a.second, b.second, c.second, d.second, second);
+  transpose(a.center, b.center, c.center, d.center, center);
+  transpose(a.half, b.half, c.half, d.half, half);
+  const Float4 third[3] = {first[1] * second[2] - first[2] * second[1], first[2] * second[0] - first[0] * second[2],
+                           first[0] * second[1] - first[1] * second[0]};
+  return {{center[0], center[1], center[2]},
+          {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}, {third[0], third[1], third[2]}},
+          {half[0], half[1], half[2]},
+          {center[3], half[3]},
+          first[3],
+          second[3]};
 }
 
 /// [main] Rounds a box to single precision. The result encloses the box.

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "kernels/brep/tree/box_tree.hpp"
+#include "kernels/brep/tree/lanes.hpp"
 #include "kernels/part/part.hpp"
 
 namespace hapticd::brep {
@@ -29,23 +30,6 @@ struct alignas(64) FourDiscs {
 /// float.
 inline constexpr float kUnused = 1e18F;
 
-/// [rt] Returns four unused places.
-inline FourDiscs emptyFour(const RowDisc&) noexcept {
-  FourDiscs discs{};
-  discs.center[0] = Float4{} + kUnused;
-  return discs;
-}
-
-/// [rt] Writes a disc to place `lane` of four.
-inline void put(const RowDisc& disc, int lane, FourDiscs& to) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    to.center[axis][lane] = disc.center[axis];
-    to.normal[axis][lane] = disc.normal[axis];
-  }
-  to.half[lane] = disc.half;
-  to.radius[lane] = disc.radius;
-}
-
 /// [rt] Makes place `lane` of four unused.
 inline void putNothing(int lane, FourDiscs& to) noexcept {
   to.center[0][lane] = kUnused;
@@ -58,19 +42,11 @@ inline FourDiscs fourOf(const RowDisc& a, const RowDisc& b, const RowDisc& c, co
     Float4 first, second;
   };
   static_assert(sizeof(RowDisc) == sizeof(Halves));
-  const auto turn = [](const Float4& x0, const Float4& x1, const Float4& x2, const Float4& x3, Float4* to) {
-    const Float4 y0 = __builtin_shufflevector(x0, x1, 0, 4, 1, 5), y1 = __builtin_shufflevector(x0, x1, 2, 6, 3, 7),
-                 y2 = __builtin_shufflevector(x2, x3, 0, 4, 1, 5), y3 = __builtin_shufflevector(x2, x3, 2, 6, 3, 7);
-    to[0] = __builtin_shufflevector(y0, y2, 0, 1, 4, 5);
-    to[1] = __builtin_shufflevector(y0, y2, 2, 3, 6, 7);
-    to[2] = __builtin_shufflevector(y1, y3, 0, 1, 4, 5);
-    to[3] = __builtin_shufflevector(y1, y3, 2, 3, 6, 7);
-  };
   const auto ha = std::bit_cast<Halves>(a), hb = std::bit_cast<Halves>(b), hc = std::bit_cast<Halves>(c),
              hd = std::bit_cast<Halves>(d);
   Float4 first[4], second[4];
-  turn(ha.first, hb.first, hc.first, hd.first, first);
-  turn(ha.second, hb.second, hc.second, hd.second, second);
+  transpose(ha.first, hb.first, hc.first, hd.first, first);
+  transpose(ha.second, hb.second, hc.second, hd.second, second);
   return {{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, second[2], second[3]};
 }
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 #include <vector>
@@ -39,8 +38,7 @@ TEST(RowDisc, BoundsNoTriangleFromAbove) {
     for (std::size_t i = 0; i < 4; ++i) {
       if (body.tree.node(n).child[i] >= 0) continue;
       const RowDisc& disc = body.discs[static_cast<std::size_t>(body.tree.node(n).row[i])];
-      FourDiscs four = emptyFour(disc);
-      for (int lane = 0; lane < 4; ++lane) put(disc, lane, four);
+      const FourDiscs four = fourOf(disc, disc, disc, disc);
       const ElementRow row = BoxTree::rowOf(body.tree.node(n).child[i]);
       for (int k = 0; k < 40; ++k) {
         const std::uint32_t corner = model.part().triangles[body.elements[row.first].index()].corner[k % 3u];
@@ -165,16 +163,21 @@ TEST(NearRows, ServeAgainSoonAfterAJump) {
   EXPECT_LT(2 * near_nodes, all_nodes) << near_nodes << " " << all_nodes;
 }
 
-/// fourOf() places the numbers of discs as put() does, one by one.
 TEST(RowDisc, FourSideBySideKeepTheirNumbers) {
   std::mt19937 random(9);
   const Model model(samples::scatteredTriangles(random));
   const std::vector<RowDisc>& discs = model.body(0).discs;
   for (std::size_t i = 0; i + 4 <= discs.size(); i += 4) {
-    FourDiscs one_by_one = emptyFour(discs[i]);
-    for (int lane = 0; lane < 4; ++lane) put(discs[i + static_cast<std::size_t>(lane)], lane, one_by_one);
     const FourDiscs four = fourOf(discs[i], discs[i + 1], discs[i + 2], discs[i + 3]);
-    ASSERT_EQ(std::memcmp(&four, &one_by_one, sizeof four), 0) << i;
+    for (int lane = 0; lane < 4; ++lane) {
+      const RowDisc& disc = discs[i + static_cast<std::size_t>(lane)];
+      for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(four.center[axis][lane], disc.center[axis]) << i;
+        ASSERT_EQ(four.normal[axis][lane], disc.normal[axis]) << i;
+      }
+      ASSERT_EQ(four.half[lane], disc.half) << i;
+      ASSERT_EQ(four.radius[lane], disc.radius) << i;
+    }
   }
 }
 

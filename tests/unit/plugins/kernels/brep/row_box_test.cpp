@@ -103,6 +103,25 @@ Part rowOfSheets(const std::string& file) {
   return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
 }
 
+/// Four boxes side by side are as far from a probe as one by one, and an unused place is farther than any of them.
+TEST(RowBox, FourSideBySideAreAsFarAsAlone) {
+  const Model model(samples::plate(6, 5, 0.6, 1.6, 5));
+  const BodyTree& body = model.body(0);
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> share(-0.5, 1.5);
+  for (std::size_t i = 0; i + 4 <= body.rows.size(); ++i) {
+    const Eigen::AlignedBox3d& box = body.tree.bounds();
+    const Vector3d aside(share(random), share(random), share(random));
+    const BoxProbe probe(body.tree, box.min() + aside.cwiseProduct(box.sizes()));
+    FourRowBoxes four = fourOf(body.rows[i], body.rows[i + 1], body.rows[i + 2], body.rows[i + 3]);
+    const Float4 distances = rowDistances(four, probe);
+    for (int lane = 0; lane < 4; ++lane)
+      ASSERT_FLOAT_EQ(distances[lane], rowDistance(body.rows[i + static_cast<std::size_t>(lane)], probe)) << i;
+    putNothing(static_cast<int>(i % 4), four);
+    ASSERT_GT(rowDistances(four, probe)[static_cast<int>(i % 4)], 1e30F) << i;
+  }
+}
+
 TEST(RowBox, BoundsNoLeafAndNoPieceFromAbove) {
   expectBounds("teapot", rowOfSheets("teapot.yaml"));
   expectBounds("goblet", rowOfSheets("goblet.yaml"));
