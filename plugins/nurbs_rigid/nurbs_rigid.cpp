@@ -46,8 +46,10 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
                                 number(kSteepest) + " or less, so give at most " +
                                 number(texture_amplitude_ * kSteepest / slope) + " m");
   const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
-  const double steepest = stiffness_ > 0 ? contact::wallSlopeAt(law, forceToClaimFor(activation, kUnknownForce)) : 0;
+  const double force = forceToClaimFor(activation, kUnknownForce);
+  const double steepest = stiffness_ > 0 ? contact::wallSlopeAt(law, force) : 0;
   report.max_stiffness = steepest * (1 + slope);
+  letGoBeyond(contact::wallDepthAt(law, force));
   if (part() != nullptr && sides_ == kFront) warnOfThinWalls(activation);
   if (pop_through_ > 0 && sides_ == kBoth) reportJumps(report, pop_through_);
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;

@@ -76,7 +76,9 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   lifted_ = 2 * mass_ * pull.norm() * length_ * half * half;
   stored_ = 0;
   const contact::WallLaw wall{stiffness_, contact_damping_, exponent_, depth_scale_};
-  report.max_stiffness = stiffness_ > 0 ? contact::wallSlopeAt(wall, forceToClaimFor(activation, kUnknownForce)) : 0;
+  const double force = forceToClaimFor(activation, kUnknownForce);
+  report.max_stiffness = stiffness_ > 0 ? contact::wallSlopeAt(wall, force) : 0;
+  letGoBeyond(contact::wallDepthAt(wall, force));
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   if (contact_damping_ > 0) report.flags |= HSP_R_VELOCITY;
 }

@@ -37,6 +37,7 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.reserve(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
+  letGoBeyond(forceToClaimFor(activation, kUnknownForce) / stiffness_);
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   // greatest force of the detent: where the detent falls faster than the surface's spring, the button snaps, and the
   // force jumps by less than this

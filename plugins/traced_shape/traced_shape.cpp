@@ -101,6 +101,7 @@ contact::ContactRule TracedShape::contactRule() const noexcept HSP_RT {
   contact::ContactRule rule;
   rule.sides = static_cast<contact::Sides>(sides_);
   if (contact_hysteresis_ < kHoldAlways) rule.hysteresis = contact_hysteresis_;
+  rule.deepest = deepest_;
   return rule;
 }
 
@@ -145,6 +146,15 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
     if (!balls_.empty()) balls_[index].forget();
   }
   return touch;
+}
+
+/// True if a ball about p certainly does not meet the model. A part is searched as a whole. The tracer of a model file
+/// follows feet from where it was, so its box has to do.
+bool TracedShape::fitsAt(const Eigen::Vector3d& p, uint32_t probe) noexcept HSP_RT {
+  if (!part_) return model_->bounds().exteriorDistance(p) > tip_radius_;
+  const contact::Foot foot = part_tracers_[probe].nearest(p, {});
+  const double out = sides_ == kBoth ? foot.distance : -foot.depth;
+  return foot.status == contact::FootStatus::kNearest && out > tip_radius_;
 }
 
 void TracedShape::forgetContact(uint32_t probe) noexcept HSP_RT {

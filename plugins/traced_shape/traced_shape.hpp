@@ -2,6 +2,7 @@
 /// Base class of shapes that trace NURBS models. It has the parameters of geometry and tracing, the tracers, and the
 /// extensions for surfaces and geometry. A derived class adds the forces of a contact.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -86,6 +87,10 @@ class TracedShape : public Shape {
   void load(const hsp_activation& activation, hsp_report& report);
   /// [rt] Traces one probe, and sets point, normal, depth, parameters and flags of its contact. The forces stay zero.
   Touch trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
+  /// [main] Call it after load(): a contact that is twice as deep as the whole force of the arm presses is let go once
+  /// the probe is outside again, behind another face. Else a body that went over a hand would pull it along behind it.
+  /// @param depth [m] at which the wall pushes with the arm's largest force
+  void letGoBeyond(double depth) { deepest_ = std::clamp(2 * depth, kLeastHeld, kMostHeld); }
   /// [rt] Call it after a probe was pushed through a shell: from now on this probe feels the shell's other side.
   void popThrough(uint32_t probe) noexcept HSP_RT;
   const trace::Model& model() const noexcept { return *model_; }  ///< the traced model; valid only if part() is null
@@ -108,6 +113,9 @@ class TracedShape : public Shape {
   double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven, tip_radius_ = 0;
 
  private:
+  /// [m] A contact that is less deep is held, as in a thin plate; one that is deeper is let go, however soft the wall
+  /// is.
+  static constexpr double kLeastHeld = 0.03, kMostHeld = 0.1;
   /// [m] with a contact hysteresis of at least this, the contact never changes to another face
   static constexpr double kHoldAlways = 1;
   static constexpr double kNotGiven = -1;
@@ -139,6 +147,7 @@ class TracedShape : public Shape {
   template <class FootAt>
   contact::Foot footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT;
   void forgetContact(uint32_t probe) noexcept HSP_RT;
+  bool fitsAt(const Eigen::Vector3d& p, uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -154,6 +163,7 @@ class TracedShape : public Shape {
   Touch tracePart(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
 
   bool takes_parts_ = false;
+  double deepest_ = kMostHeld;  ///< see letGoBeyond()
   std::string instance_;
   std::unique_ptr<brep::Model> part_;
   std::vector<brep::Tracer> part_tracers_;  ///< one per probe
@@ -170,11 +180,18 @@ class TracedShape : public Shape {
   hsp_ext_names names_extension_{};
 };
 
-/// Returns the foot of a probe, or of the ball about it. @param foot_at function that traces a point
+/// Returns the foot of a probe, or of the ball about it. The kernel lets go a point that went through, see
+/// letGoBeyond(). Of a ball it knows the proxy alone, so here the ball is let go. @param foot_at function that traces a
+/// point
 template <class FootAt>
 contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT {
   const Eigen::Vector3d p(probe.position);
-  return balls_.empty() || !p.allFinite() ? foot_at(p) : balls_[index].step(foot_at, p, tip_radius_);
+  if (balls_.empty() || !p.allFinite()) return foot_at(p);
+  const contact::Foot foot = balls_[index].step(foot_at, p, tip_radius_);
+  if (!(foot.depth > deepest_) || !fitsAt(p, index)) return foot;
+  forgetContact(index);
+  if (model_) searched_[index] = 0;
+  return balls_[index].step(foot_at, p, tip_radius_);
 }
 
 template <class T>

@@ -23,6 +23,9 @@ struct ContactRule {
   /// no contact is held and the nearest face is always felt. With infinity, a contact is held until the probe comes
   /// out.
   double hysteresis = std::numeric_limits<double>::infinity();
+  /// [m] A held contact that is deeper than this ends once the probe is certainly outside of the solid again, on
+  /// another side: it went through. A shell is so thin that the probe is outside at any depth.
+  double deepest = std::numeric_limits<double>::infinity();
 };
 
 /// The result of following a held foot to the probe's new position.
@@ -64,7 +67,7 @@ class ContactState {
   /// @param distance [m] distance from the probe to the face: that to the foot, less the error of the foot for a shell
   bool isUnchanged(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
     const double out = side_ * height;
-    if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0;
+    if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0 && -out <= rule.deepest;
     if (!(rule.hysteresis > 0)) return rule.sides == Sides::kFront;
     const bool clear = phase_ == Phase::kOutside && (p - from_).squaredNorm() < clearance_ * clearance_;
     if (!clear || !(distance > kTouching) || (rule.sides != Sides::kBoth && !(out > 0))) return false;
@@ -162,14 +165,16 @@ bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRu
   return false;
 }
 
-/// True if another face is nearer than the held foot by more than the hysteresis. Sets the status of the held foot to
-/// kHeld if that foot is not the nearest.
+/// True if another face is nearer than the held foot by more than the hysteresis, or if the probe went through. Sets
+/// the status of the held foot to kHeld if that foot is not the nearest.
 template <class Faces>
 bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept {
   constexpr double kSame = 1e-9;  // [m] distances that differ by less count as equal
   const Foot nearest = faces.nearest();
   const bool is_nearest = nearest.status == FootStatus::kNearest && nearest.distance >= foot.distance - kSame;
   if (foot.status == FootStatus::kNearest && !is_nearest) foot.status = FootStatus::kHeld;
+  const bool outside = rule.sides == Sides::kBoth || !(seenFrom(nearest, side_).depth > 0);
+  if (foot.depth > rule.deepest && nearest.status == FootStatus::kNearest && outside) return true;
   return found(nearest) && nearest.distance < foot.distance - rule.hysteresis;
 }
 

@@ -99,6 +99,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (options.found_pressed) arm->limiter_.enableByFoundPressed();
   arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
+  arm->limiter_.expectPeriod(std::max(1 / options.rate, arm->sample_period_));
   arm->limiter_.expectMotion(estimatorDelay(servo.velocity, options.rate), mass);
   if (described.admittance) {
     if (const std::string no = Admittance::refusal(arm->info()); !no.empty())

@@ -81,8 +81,9 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   // The motors held the last force until now, however late this tick is.
   const double held = std::min(dt, kImpulseWindow);
   impulse_ += (last_force_.norm() - impulse_ / kImpulseWindow) * held;
-  if (limits_.slew > 0) follow(slow_force_, last_force_, limits_.slew, dt);
-  if (limits_.torque_slew > 0) follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
+  const double grows = std::min(dt, period_);
+  if (limits_.slew > 0) follow(slow_force_, last_force_, limits_.slew, grows);
+  if (limits_.torque_slew > 0) follow(slow_torque_, last_torque_, limits_.torque_slew, grows);
   if (fault() != Fault::kNone) {
     // Fades the last force, because the new one may be the fault itself.
     fade_ = rampedDown(fade_, dt, faultRamp());
@@ -126,7 +127,7 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   if (max_force_ > 0 && cap(force, max_force_ * share)) count(Limit::kForce);
   if (limits_.torque > 0 && cap(torque, limits_.torque * share)) count(Limit::kTorque);
   if (limits_.impulse > 0) limitImpulse(force, dt);
-  const double window = std::max(dt, kSlewWindow);
+  const double window = std::max(std::min(dt, period_), kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
   if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
   if (limits_.power > 0) limitPower(force);  // after the slew limit, which may turn the force

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "description/scene.hpp"
@@ -58,6 +59,9 @@ class Limiter {
   /// [main] Sets two values for limits.power. @param lag [s] delay of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
+  /// [main] Sets the usual time [s] between two ticks. After a longer gap the force grows by no more than in this time:
+  /// the hand has felt nothing of the growth meanwhile.
+  void expectPeriod(double period) { period_ = period; }
   /// [rt] Sets the share of the force that the age of the newest sample allows, from 1 (new) to 0 (too old). Call it
   /// before apply().
   void trustSample(double share) noexcept HSP_RT { trusted_ = share; }
@@ -127,6 +131,7 @@ class Limiter {
   bool clipped_ = false;  // a limit has reduced the force of this tick
   bool cleared_ = false;  // the user cleared the fault while the force was still ramping down
   double heat_factor_ = 1, impulse_ = 0;
+  double period_ = std::numeric_limits<double>::infinity();  // [s] see expectPeriod()
   // shares of the force for the age of the sample. trusted_: the share that is allowed now. fresh_: the share in use,
   // which grows slowly
   double trusted_ = 1, fresh_ = 1;

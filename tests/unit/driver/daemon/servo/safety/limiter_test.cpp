@@ -99,6 +99,19 @@ TEST(Limiter, TheSlewLimitIsTheSameAtEveryRate) {
 }
 
 /// What follows the force stays behind it also by parts of a newton.
+TEST(Limiter, AForceGrowsAfterAGapByNoMoreThanInOnePeriod) {
+  for (const double period : {1e-4, 1e-3, 1e-2}) {
+    scene::Limits limits = generous();
+    limits.slew = 2000;
+    Limiter limiter(limits, 0);
+    limiter.expectPeriod(period);
+    const double step = limits.slew * std::max(period, Limiter::kSlewWindow);
+    EXPECT_LE(limited(limiter, {1e3, 0, 0}, 0.05).x(), step + 1e-9) << period;
+    EXPECT_LE(limited(limiter, {1e3, 0, 0}, 0.09).x(), 2 * step + 1e-9) << period;
+    EXPECT_EQ(limited(limiter, {0, 0, 0}, 0.09).x(), 0) << period;
+  }
+}
+
 TEST(Limiter, ASmallSlewLimitHoldsAtAFastRate) {
   scene::Limits limits = generous();
   limits.slew = 500;
