@@ -82,6 +82,7 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
                    "begins with samples"};
     position.push_back(p.allFinite() ? p : position.back());
   }
+  if (auto same = (*recording)->unchanged(); !same) return Error{same.error()};
   const double seconds = ticks->number(ticks->rows() - 1, *columns[0]) - ticks->number(0, *columns[0]);
   const double period = seconds / static_cast<double>(ticks->rows() - 1);
   if (!(period > 0))

@@ -112,6 +112,7 @@ int explainRecording(const std::string& file) {
   printLines("orders", recordedOrders(**recording, *run, models), "orders");
   printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");
   printLines("moved", jointRanges(**recording, models, run->facts.rate), "poses");
+  if (auto same = (*recording)->unchanged(); !same) return fail(kFailed, same.error());
   return kWorked;
 }
 

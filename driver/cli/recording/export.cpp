@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/regular_file.hpp"
 #include "cli/recording/name_tables.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/open_end.hpp"
@@ -32,14 +33,23 @@ void printExport(const std::string& file, const record::Exported& done) {
               static_cast<double>(done.bytes) / 1e6);
 }
 
+/// Prints what was written, or removes it if the recording was changed meanwhile.
+int finish(const record::Recording& recording, const std::string& file, const record::Exported& done) {
+  if (auto same = recording.unchanged(); !same) {
+    removeIncomplete(file);
+    return fail(kFailed, same.error() + "; " + file + " was removed");
+  }
+  printExport(file, done);
+  return kWorked;
+}
+
 int toMcap(const record::Recording& recording, const std::string& file) {
   std::vector<record::Attachment> names;
   if (const auto run = servo::readAbout(recording.aboutJson()))
     names.push_back({"models.csv", "text/csv", modelsTable(servo::RunModels(recording, run->scene)).text});
   auto done = record::exportMcap(recording, file, names);
   if (!done) return fail(kFailed, done.error());
-  printExport(file, *done);
-  return kWorked;
+  return finish(recording, file, *done);
 }
 
 std::vector<std::string> namesOf(const record::Recording& recording) {
@@ -130,7 +140,7 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
       if (!one) std::filesystem::remove(options.csv, error);  // if it is empty
       return fail(kFailed, done.error());
     }
-    printExport(file, *done);
+    if (const int code = finish(recording, file, *done); code != kWorked) return code;
   }
   return writeExtra(extra);
 }

@@ -135,6 +135,7 @@ int plot(const PlotArguments& options) {
   if (const std::string wrong = whyNotWritable(out); !wrong.empty()) return fail(kBadInput, wrong);
   record::RunReport report = reportOf(titleOf(options.file, **recording), samples);
   const record::RunNotes notes = notesOf(**recording, *ticks, rows, options.arm, samples, report.virtual_time);
+  if (auto same = (*recording)->unchanged(); !same) return fail(kFailed, same.error());
   if (auto drawn = record::drawRun(report, samples, notes, out); !drawn) return fail(kFailed, drawn.error());
   std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
   return kWorked;

@@ -226,6 +226,7 @@ int replay(const ReplayArguments& options) {
   if (!again)
     return fail(kBadInput, options.file + ": " + again.error() + (damage.empty() ? "" : ", because " + damage));
   servo::ReplayOutcome outcome = (*again)->run();
+  if (auto same = (*recording)->unchanged(); !same) return fail(kFailed, same.error());
   if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
   const int code = options.json ? printAsJson(outcome) : print(outcome);
   return code == kWorked && !damage.empty() ? kPartly : code;

@@ -195,9 +195,10 @@ void FoxgloveSession::sendScene() {
   const Json models = stage_.list().value("models", Json::array());
   const auto share = kSceneTriangles / std::max(static_cast<uint32_t>(models.size()), 1u);
   for (const Json& model : models) {
-    const std::string name = model.value("name", "");
-    stage_.draw(name, std::max(share, kFewestTriangles),
-                [this, name, subscription, alive = alive_](const DrawnModel& drawn) {
+    const ModelKey key = keyOf(model, "name");
+    if (stage_.recorded() && key.since > 0) continue;  // it has no frame in /tf
+    stage_.draw(key, std::max(share, kFewestTriangles),
+                [this, name = key.name, subscription, alive = alive_](const DrawnModel& drawn) {
                   if (*alive && drawn.mesh)
                     send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
                 });

@@ -67,14 +67,14 @@ class NativeSession final : public PeerSession {
   std::shared_ptr<bool> alive_;  ///< false after the page has gone, so that later answers are dropped
   uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
   std::vector<uint64_t> next_;  ///< next row to send of each stream
-  std::map<std::string, uint64_t> frames_;
+  std::map<ModelKey, uint64_t> frames_;
   std::unique_ptr<Playback> playback_;
   /// What this page has requested of a body of the recording.
   struct Body {
     double time = NAN;  ///< [s] time of the shape that was requested last
     bool asked = false;
   };
-  std::map<std::string, Body> bodies_;
+  std::map<ModelKey, Body> bodies_;
   std::map<uint32_t, std::unique_ptr<Lead>> leads_;
   uint32_t next_lead_ = 1;
 };
@@ -144,15 +144,16 @@ void NativeSession::sendRows() {
   if (playback_) {
     playback_->advance();
     jump();
-    for (size_t i = 0; i < next_.size(); ++i) sendRows(i, playback_->ends()[i]);
-    if (playback_->takeChanged()) peer_.text(playback_->stateJson());
-    return;
   }
-  // the end of the ticks is read first, because rows of other streams are written before the row of their tick
-  const size_t ticks = rows.find("ticks");
+  const auto endOf = [&](size_t stream) { return playback_ ? playback_->ends()[stream] : rows.end(stream); };
+  // Marks name the models that come, so they go before the events of these. The end of the ticks is read last, because
+  // rows of other streams are written before the row of their tick.
+  const size_t ticks = rows.find("ticks"), marks = rows.find("marks");
+  if (marks < next_.size()) sendRows(marks, endOf(marks));
   for (size_t i = 0; i < next_.size(); ++i)
-    if (i != ticks) sendRows(i, rows.end(i));
-  if (ticks < next_.size()) sendRows(ticks, rows.end(ticks));
+    if (i != ticks && i != marks) sendRows(i, endOf(i));
+  if (ticks < next_.size()) sendRows(ticks, endOf(ticks));
+  if (playback_ && playback_->takeChanged()) peer_.text(playback_->stateJson());
 }
 
 /// Called when the place in the recording has jumped. Makes the page forget its rows, and sends it the rows before the
@@ -195,7 +196,7 @@ void NativeSession::sendVertices() {
 /// Requests, for each body of a recording, the shape at the page's present place, as soon as the last answer has come.
 void NativeSession::askBodies() {
   const double now = playback_->time();
-  for (const std::string& model : stage_.bodies()) {
+  for (const ModelKey& model : stage_.bodies()) {
     Body& body = bodies_[model];
     if (body.asked || body.time == now) continue;
     body = {now, true};
@@ -278,17 +279,19 @@ void NativeSession::draw(const Json& id, const Json& request) {
   const double most = wish != request.end() && wish->is_number() ? wish->get<double>() : kUsualTriangles;
   if (!(most >= kFewestTriangles && most <= kMostTriangles))
     return answer(id, {{"ok", false}, {"error", "\"triangles\": expected a whole number from 1000 to 600000"}});
-  stage_.draw(request["model"], static_cast<uint32_t>(most), [this, id, alive = alive_](const DrawnModel& drawn) {
-    if (!*alive) return;
-    if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});
-    peer_.binary(drawn.mesh);
-    Json said = drawn.facts;
-    said["ok"] = true;
-    answer(id, std::move(said));
-  });
+  stage_.draw(keyOf(request, "model"), static_cast<uint32_t>(most),
+              [this, id, alive = alive_](const DrawnModel& drawn) {
+                if (!*alive) return;
+                if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});
+                peer_.binary(drawn.mesh);
+                Json said = drawn.facts;
+                said["ok"] = true;
+                answer(id, std::move(said));
+              });
 }
 
 void NativeSession::pass(const Json& id, Json request) {
+  if (!stage_.recorded()) request.erase("since");  // a daemon has one model of a name
   stage_.daemon().ask(request, [this, id, alive = alive_](const Json& said, const Descriptor&) {
     if (*alive) answer(id, said);
   });

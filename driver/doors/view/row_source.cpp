@@ -144,6 +144,7 @@ class RecordingRows final : public RowSource {
   }
   const std::string& aboutJson() const override { return recording_->aboutJson(); }
   const std::vector<RowStream>& streams() const override { return streams_; }
+  Result<void> unchanged() const override { return recording_->unchanged(); }
   uint64_t begin(size_t) const override { return 0; }
   uint64_t end(size_t stream) const override { return recording_->streams()[stream].rows(); }
   uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const override {

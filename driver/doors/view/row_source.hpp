@@ -37,6 +37,9 @@ class RowSource {
   /// `first` is no longer kept
   virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
 
+  /// [main] Fails if another program has cut or changed the file.
+  virtual Result<void> unchanged() const { return {}; }
+
   /// [main] Returns the index of the stream of that name, or streams().size() if there is none.
   size_t find(const std::string& name) const;
 };
@@ -45,7 +48,7 @@ class RowSource {
 /// complete.
 Result<std::unique_ptr<RowSource>> openBlackBox(const std::string& file);
 
-/// [main] Maps a recording, a dump, or the file that a crash left.
+/// [main] Opens a recording, a dump, or the file that a crash left.
 Result<std::unique_ptr<RowSource>> openRecording(const std::string& file);
 
 /// [main] Returns the first row of a stream whose tick is `tick` or later. Rows are in the order of their ticks.

@@ -84,9 +84,15 @@ class Heartbeat {
       const bool looks = ++beats_ % kLook == 0;
       if (looks) browser_.look();
       if (looks && !lock_file_.empty() && !daemonLives(lock_file_)) return io_.stop();
+      if (const auto same = looks && stage_.rows() != nullptr ? stage_.rows()->unchanged() : Result<void>(); !same) {
+        error_ = same.error();
+        return io_.stop();
+      }
       scheduleNext();
     });
   }
+
+  const std::string& error() const { return error_; }  ///< why nothing more can be shown; "" if nothing is wrong
 
  private:
   /// Number of ticks between two checks of the daemon and the browser: about one second.
@@ -96,7 +102,7 @@ class Heartbeat {
   Stage& stage_;
   Server& server_;
   Browser& browser_;
-  std::string lock_file_;
+  std::string lock_file_, error_;
   unsigned beats_ = 0;
 };
 
@@ -135,7 +141,9 @@ int serve(const ServeOptions& options) {
   Heartbeat heartbeat(io, stage, **server, browser, lock_file);
   heartbeat.scheduleNext();
   io.run();
-  return 0;
+  if (heartbeat.error().empty()) return 0;
+  std::fprintf(stderr, "error: %s\n", heartbeat.error().c_str());
+  return kFailed;
 }
 
 }  // namespace hapticd::view

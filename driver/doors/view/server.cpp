@@ -10,6 +10,7 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <deque>
+#include <list>
 #include <optional>
 #include <set>
 #include <vector>
@@ -53,12 +54,17 @@ RequestHead headOf(const Request& request) {
 
 class ServerImpl;
 class Socket;
+class Connection;
 
 /// The open connections. Each connection shares the ownership of this register, because connections that are still open
 /// at the end outlive the server: they end with the io_context.
 struct Register {
   std::set<Socket*> sockets;
+  std::list<Connection*> silent;  ///< connections whose request has not come yet; the first waits longest
   size_t connections = 0;
+
+  /// Makes room for one more connection, if need be by ending the one that is silent longest. Returns false if none is.
+  bool makeRoom();
 };
 
 /// One WebSocket with its conversation. Messages are sent one after the other.
@@ -106,6 +112,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(tcp::socket socket, ServerImpl& server);
   ~Connection();
   void read();
+  void end() { stream_.close(); }  ///< it is destroyed after its last pending operation
 
  private:
   void onRead(ErrorCode error);
@@ -121,6 +128,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Response response_;
   std::string body_;
 };
+
+bool Register::makeRoom() {
+  if (connections < Server::kMostConnections) return true;
+  if (silent.empty()) return false;
+  silent.front()->end();
+  silent.pop_front();
+  return true;
+}
 
 class ServerImpl final : public Server {
  public:
@@ -164,8 +179,7 @@ class ServerImpl final : public Server {
   void accept(tcp::acceptor& acceptor) {
     acceptor.async_accept([this, &acceptor](ErrorCode error, tcp::socket socket) {
       if (!acceptor.is_open()) return;
-      if (!error && register_->connections < kMostConnections)
-        std::make_shared<Connection>(std::move(socket), *this)->read();
+      if (!error && register_->makeRoom()) std::make_shared<Connection>(std::move(socket), *this)->read();
       if (!error) return accept(acceptor);
       // waits before it accepts again, because there may be no free descriptor
       auto timer = std::make_shared<asio::steady_timer>(acceptor.get_executor(), std::chrono::milliseconds(500));
@@ -185,6 +199,7 @@ Connection::Connection(tcp::socket socket, ServerImpl& server)
 }
 
 Connection::~Connection() {
+  register_->silent.remove(this);
   --register_->connections;
 }
 
@@ -193,11 +208,13 @@ void Connection::read() {
   parser_->header_limit(kHeadBytes);
   parser_->body_limit(0);
   stream_.expires_after(kHeadPatience);
+  register_->silent.push_back(this);
   http::async_read(stream_, buffer_, *parser_,
                    [self = shared_from_this()](ErrorCode error, size_t) { self->onRead(error); });
 }
 
 void Connection::onRead(ErrorCode error) {
+  register_->silent.remove(this);
   if (error == http::error::header_limit)
     return refuse(431, "the head of the request is larger than 8 KiB, expected less");
   if (error == http::error::body_limit) return refuse(413, "the request has a body, expected none");

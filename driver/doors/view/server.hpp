@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// HTTP and WebSocket on the loopback interface, with these limits: 8 KiB for the head of a request, 10 s for its
-/// arrival, 64 KiB per message, 8 WebSockets, 32 connections. Only server.cpp uses Boost.Beast.
+/// arrival, 64 KiB per message, 8 WebSockets, 32 connections; one more ends the one that is silent longest. Only
+/// server.cpp uses Boost.Beast.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "document/json_text.hpp"
@@ -30,13 +31,20 @@ void eachModel(const Json& list, Use&& use) {
   }
 }
 
-/// Requests the triangles as memory instead of text: with exact normals, without a limit on the size, and without
-/// conversion.
-Json geometryRequest(const std::string& model) {
-  return {{"do", "geometry"}, {"model", model}, {"as", "memory"}};
+}  // namespace
+
+ModelKey keyOf(const Json& request, const char* name) {
+  const auto since = request.find("since");
+  return {request.value(name, ""), since != request.end() && since->is_number_unsigned() ? since->get<uint64_t>() : 0};
 }
 
-}  // namespace
+/// Requests the triangles as memory instead of text: with exact normals, without a limit on the size, and without
+/// conversion. A daemon has one model of a name, and a recording may have several.
+Json Stage::geometryRequest(const ModelKey& model) const {
+  Json request = {{"do", "geometry"}, {"model", model.name}, {"as", "memory"}};
+  if (recorded()) request["since"] = model.since;
+  return request;
+}
 
 Stage::Stage(boost::asio::io_context& io, StageOptions options) : io_(io), options_(std::move(options)) {
   socket_ = recorded() ? options_.drawings : options_.folder + "/" + options_.name + ".sock";
@@ -94,17 +102,7 @@ void Stage::tick() {
 
 void Stage::poll() {
   daemon_->ask({{"do", "list"}}, [this](const Json& answer, const Descriptor&) {
-    if (!answer.value("ok", false) || answer == list_) return;
-    list_ = answer;
-    ++list_number_;
-    std::map<std::string, Soft> soft;
-    eachModel(list_, [&](uint32_t number, const Json& model) {
-      if (!model.value("deforms", false)) return;
-      const std::string name = model["name"];
-      if (const auto known = soft_.find(name); known != soft_.end()) soft[name] = known->second;
-      soft[name].number = number;
-    });
-    soft_ = std::move(soft);
+    if (answer.value("ok", false) && answer != list_) takeList(answer);
   });
   if (recorded()) return;
   daemon_->ask({{"do", "status"}}, [this](const Json& answer, const Descriptor&) {
@@ -114,42 +112,61 @@ void Stage::poll() {
   });
 }
 
+/// Takes a new list, and forgets what belongs to models that have left.
+void Stage::takeList(const Json& list) {
+  list_ = list;
+  ++list_number_;
+  std::set<ModelKey> present;
+  std::map<ModelKey, Soft> soft;
+  eachModel(list_, [&](uint32_t number, const Json& model) {
+    const ModelKey key = keyOf(model, "name");
+    present.insert(key);
+    if (!model.value("deforms", false)) return;
+    if (const auto known = soft_.find(key); known != soft_.end()) soft[key] = known->second;
+    soft[key].number = number;
+  });
+  soft_ = std::move(soft);
+  const auto left = [&](const auto& one) { return !present.contains(one.first); };
+  std::erase_if(meshes_, left);
+  std::erase_if(live_, left);
+}
+
 /// Requests the newest frame of each model that deforms, as soon as the last answer has come.
 void Stage::pollSoft() {
   findTouched();
   const Clock::time_point now = Clock::now();
-  for (auto& [name, soft] : soft_) {
+  for (auto& [model, soft] : soft_) {
     if (soft.asked || now < soft.next) continue;
     if (soft.frames)
-      askVertices(name);
+      askVertices(model);
     else if (now - soft.touched < kRestless)
-      askGeometry(name);
+      askGeometry(model);
   }
 }
 
-void Stage::askVertices(const std::string& name) {
-  soft_[name].asked = true;
-  daemon_->ask({{"do", "vertices"}, {"model", name}, {"after", live_[name].frame}},
-               [this, name, run = run_](const Json& answer, const Descriptor&) {
-                 const auto soft = soft_.find(name);
+void Stage::askVertices(const ModelKey& model) {
+  soft_[model].asked = true;
+  daemon_->ask({{"do", "vertices"}, {"model", model.name}, {"after", live_[model].frame}},
+               [this, model, run = run_](const Json& answer, const Descriptor&) {
+                 const auto soft = soft_.find(model);
                  if (run != run_ || soft == soft_.end()) return;
                  soft->second.asked = false;
                  soft->second.frames = answer.value("ok", false);
                  if (Message message = verticesMessage(answer, soft->second.number))
-                   live_[name] = {answer.value("frame", uint64_t{0}), std::move(message)};
+                   live_[model] = {answer.value("frame", uint64_t{0}), std::move(message)};
                });
 }
 
-void Stage::askGeometry(const std::string& name) {
-  soft_[name].asked = true;
-  soft_[name].next = Clock::now() + kGeometryEvery;
-  daemon_->ask(geometryRequest(name), [this, name, run = run_](const Json& answer, const Descriptor& memory) {
-    const auto soft = soft_.find(name);
+void Stage::askGeometry(const ModelKey& model) {
+  soft_[model].asked = true;
+  soft_[model].next = Clock::now() + kGeometryEvery;
+  daemon_->ask(geometryRequest(model), [this, model, run = run_](const Json& answer, const Descriptor& memory) {
+    const auto soft = soft_.find(model);
     if (run != run_ || soft == soft_.end()) return;
     soft->second.asked = false;
-    const uint64_t frame = live_[name].frame + 1;
+    const uint64_t frame = live_[model].frame + 1;
     if (Message message = verticesMessage(answer, memory.get(), soft->second.number, static_cast<uint32_t>(frame)))
-      live_[name] = {frame, std::move(message)};
+      live_[model] = {frame, std::move(message)};
   });
 }
 
@@ -176,12 +193,12 @@ void Stage::findTouched() {
     std::memcpy(&model, rows.data() + i * bytes + model_at, sizeof model);
     std::memcpy(&depth, rows.data() + i * bytes + depth_at, sizeof depth);
     if (!(depth > 0)) continue;
-    for (auto& [name, soft] : soft_)
+    for (auto& [key, soft] : soft_)
       if (soft.number == model) soft.touched = Clock::now();
   }
 }
 
-void Stage::draw(const std::string& model, uint32_t most, std::function<void(const DrawnModel&)> drawn) {
+void Stage::draw(const ModelKey& model, uint32_t most, std::function<void(const DrawnModel&)> drawn) {
   const auto known = meshes_.find(model);
   if (known != meshes_.end() && known->second.most == most) return drawn(known->second.drawn);
   Json request = geometryRequest(model);
@@ -199,7 +216,7 @@ void Stage::draw(const std::string& model, uint32_t most, std::function<void(con
                });
 }
 
-void Stage::drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn) {
+void Stage::drawAt(const ModelKey& model, double t, std::function<void(const Message&)> drawn) {
   Json request = geometryRequest(model);
   request["at"] = t;
   daemon_->ask(request,
@@ -210,10 +227,10 @@ void Stage::drawAt(const std::string& model, double t, std::function<void(const 
                });
 }
 
-std::vector<std::string> Stage::bodies() const {
-  std::vector<std::string> names;
-  for (const auto& [name, soft] : soft_) names.push_back(name);
-  return names;
+std::vector<ModelKey> Stage::bodies() const {
+  std::vector<ModelKey> models;
+  for (const auto& [model, soft] : soft_) models.push_back(model);
+  return models;
 }
 
 }  // namespace hapticd::view

@@ -24,6 +24,17 @@ struct StageOptions {
   bool control = false;  ///< true if pages may change the run
 };
 
+/// A model of the run. Another one may get its name when it has left; `since` tells them apart, as in the answer to
+/// `list`.
+struct ModelKey {
+  std::string name;
+  uint64_t since = 0;
+  auto operator<=>(const ModelKey&) const = default;
+};
+
+/// [any] Returns the key of a model that a request or the list names.
+ModelKey keyOf(const Json& request, const char* name);
+
 /// The triangles of a model, or the reason why there are none.
 struct DrawnModel {
   Message mesh;  ///< message for pages with the triangles (see mesh.hpp)
@@ -55,19 +66,19 @@ class Stage {
 
   /// [main] Calls `drawn` with the triangles of a model, which come from the cache if the model does not deform.
   /// @param most largest number of triangles; a body that deforms may have more
-  void draw(const std::string& model, uint32_t most, std::function<void(const DrawnModel&)> drawn);
+  void draw(const ModelKey& model, uint32_t most, std::function<void(const DrawnModel&)> drawn);
 
   /// [main] Calls `drawn` with the vertices that a body of the recording had at time t [s], or with nullptr if they are
   /// not available. If the run changes before they come, `drawn` is not called.
-  void drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn);
-  std::vector<std::string> bodies() const;  ///< names of models that deform
+  void drawAt(const ModelKey& model, double t, std::function<void(const Message&)> drawn);
+  std::vector<ModelKey> bodies() const;  ///< models that deform
 
   /// The newest vertices of a model that deforms, as a message for pages. Frame 0 means that there are none yet.
   struct Live {
     uint64_t frame = 0;
     Message vertices;
   };
-  const std::map<std::string, Live>& live() const { return live_; }
+  const std::map<ModelKey, Live>& live() const { return live_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -81,9 +92,11 @@ class Stage {
   void find();
   void adopt(std::unique_ptr<RowSource> rows);
   void poll();
+  void takeList(const Json& list);
+  Json geometryRequest(const ModelKey& model) const;
   void pollSoft();
-  void askVertices(const std::string& name);
-  void askGeometry(const std::string& name);
+  void askVertices(const ModelKey& model);
+  void askGeometry(const ModelKey& model);
   void findTouched();
 
   boost::asio::io_context& io_;
@@ -100,9 +113,9 @@ class Stage {
     uint32_t most = 0;
     DrawnModel drawn;
   };
-  std::map<std::string, CachedDrawing> meshes_;
-  std::map<std::string, Live> live_;
-  std::map<std::string, Soft> soft_;
+  std::map<ModelKey, CachedDrawing> meshes_;
+  std::map<ModelKey, Live> live_;
+  std::map<ModelKey, Soft> soft_;
   uint64_t next_contact_ = 0;  ///< next row to read of the stream of contacts
 };
 

@@ -215,6 +215,8 @@ def crowds(view):
     slow = [view.connect() for _ in range(40)]
     for s in slow:
         s.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-")
+    status = view.request(f"/?token={view.token}")[0]
+    check("forty of them keep no page out", status == 200, status)
     time.sleep(11)
     closed = 0
     for s in slow:

@@ -93,7 +93,7 @@ export function look(page) {
     };
     const place = (i) => { // of the arm, or of the proxy of a ball that touches
       const best = now.current().filter((c) => c.probe === i).reduce((a, b) => (a?.depth >= b.depth ? a : b), null);
-      return best?.depth > 0 && view.models.balls[best.model] ? best.point : now.arms[i].now.position;
+      return best?.depth > 0 && view.models.ball(best.model) ? best.point : now.arms[i].now.position;
     };
     return {
       frames: view.frames, tick: now.tick.tick, t: now.tick.t, depth: now.tick.depth,

@@ -2,11 +2,11 @@
 // The page over time: a recording, what a crash left, a connection or a daemon that ends and comes back.
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {existsSync, readFileSync} from 'node:fs';
+import {existsSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, keepSockets, look, pictures, shown} from './browser.mjs';
-import {hapticd, scenes, until} from './program.mjs';
+import {hapticd, root, scenes, until} from './program.mjs';
 
 const kPatience = 120; // s: a machine that is busy is slow, not wrong
 let browser;
@@ -94,6 +94,55 @@ test('what a crash left is shown, plays in a loop, and its events have times', (
   assert.equal(await page.getByText('marked', {exact: true}).count(), 0, 'it is told once');
   await page.screenshot({path: join(pictures, 'crash.png')});
 }));
+
+const premium = join(root, 'config', 'devices', 'simulated-premium15.yaml');
+/** A scene with one model of a shape that ships. */
+function sceneOf(sandbox, name, geometry, x, parameters = '') {
+  const file = join(sandbox.folder, `${name}-${geometry}.yaml`);
+  writeFileSync(file, `hapticd: 1\ndevice: ${premium}\nmodels:\n  - {name: ${name}, plugin: nurbs_rigid, pose: {position: [${x}, 0, 0]},` +
+    ` parameters: {geometry: ${join(root, 'config', 'models', `${geometry}.yaml`)}${parameters}}}\n`);
+  return file;
+}
+/** What is drawn: the name, the number of triangles and the place of each model, and the ball that touches it. */
+const drawing = (page) => page.evaluate(() => {
+  const {models} = window.hapticdView.view;
+  return [...models.byIndex].map(([index, {name, triangles, mesh}]) => ({name, triangles, x: mesh.position.x, ball: models.ball(index)})).sort((a, b) => (a.name < b.name ? -1 : 1));
+});
+const listed = (page) => page.locator('#models h3').evaluateAll((heads) => heads.map((head) => head.title).sort());
+
+test('models that come and leave are drawn as they are now, live and of a recording', () => browser.sandboxed(async (sandbox, open) => {
+  const h5 = join(sandbox.folder, 'run.h5');
+  const {daemon, url} = await sandbox.show(sceneOf(sandbox, 'one', 'box', 0), {args: ['--record', h5]});
+  const ctl = (...words) => execFileSync(hapticd, ['ctl', '--name', 'test', '--wait', '30', ...words], {env: {...process.env, ...sandbox.env}, stdio: 'ignore'});
+  const page = await open(url), live = [], times = [];
+  const models = async (count, seen) => {
+    await until(async () => (await drawing(page)).length === count && seen(await drawing(page)), kPatience, `${count} models`);
+    times.push(await page.evaluate(() => window.hapticdView.now.tick.t));
+    live.push(await drawing(page));
+  };
+  await models(1, () => true);
+  ctl('add', sceneOf(sandbox, 'two', 'sphere', 0.2, ', tip_radius: 0.004'));
+  await models(2, ([, two]) => two.name === 'two');
+  assert.deepEqual(live[1].map(({name, x, ball}) => [name, x, ball]), [['one', 0, 0], ['two', 0.2, 0.004]], 'a model that came has its ball');
+  await page.getByRole('tab', {name: 'Events'}).click();
+  await page.getByText('two: was added', {exact: true}).first().waitFor();
+  ctl('remove', 'one');
+  ctl('add', sceneOf(sandbox, 'one', 'torus', 0)); // the same name, perhaps the same number
+  await models(2, ([one]) => one.triangles !== live[0][0].triangles);
+  await page.close();
+  ctl('stop');
+  await daemon.ended;
+
+  const [recorded] = await sandbox.start(['view', '--file', h5]).says(/http:\S+/);
+  const past = await open(recorded);
+  await shown(past);
+  for (const i of [2, 0, 1]) {
+    await past.evaluate(async (t) => { await window.hapticdView.ask({do: 'pause'}); await window.hapticdView.ask({do: 'seek', t}); }, times[i]);
+    await until(async () => JSON.stringify(await drawing(past)) === JSON.stringify(live[i]), kPatience,
+      `${JSON.stringify(live[i])} instead of ${JSON.stringify(await drawing(past))}`);
+    assert.deepEqual(await listed(past), live[i].map(({name}) => name));
+  }
+}, 'come-and-go-failed'));
 
 test('models that came during a recording have their names', () => browser.sandboxed(async (sandbox, open) => {
   const h5 = join(sandbox.folder, 'run.h5'), run = sandbox.start(['run', scenes('torus'), '--name', 'test', '--record', h5]);

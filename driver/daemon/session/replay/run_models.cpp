@@ -15,7 +15,8 @@ namespace {
 constexpr double kMostNumbers = 65536;                ///< a larger number of a model is damage
 constexpr size_t kMostDescription = size_t{1} << 16;  ///< [bytes] the daemon writes at most half of this
 
-constexpr auto kAdopted = static_cast<uint32_t>(Order::Kind::kAdopt);
+constexpr auto kAdopted = static_cast<uint32_t>(Order::Kind::kAdopt),
+               kReleased = static_cast<uint32_t>(Order::Kind::kRelease);
 
 /// A number of a damaged file may be anything, and a conversion of it would be undefined.
 uint64_t wholeTick(double tick) {
@@ -28,7 +29,7 @@ bool isNumber(double number) {
 }
 
 RunModel nameless(uint32_t number, uint64_t since, const char* lack) {
-  RunModel one{number, since, {}, {}, lack};
+  RunModel one{number, since, UINT64_MAX, {}, {}, lack};
   one.model.name = "model " + std::to_string(number);
   return one;
 }
@@ -37,7 +38,7 @@ RunModel nameless(uint32_t number, uint64_t since, const char* lack) {
 RunModel described(uint32_t number, uint64_t since, const std::string& text) {
   auto description = readModelDescription(text);
   if (!description) return nameless(number, since, "its description in the stream marks is damaged");
-  RunModel one{number, since, std::move(description->model), std::move(description->files), ""};
+  RunModel one{number, since, UINT64_MAX, std::move(description->model), std::move(description->files), ""};
   if (!description->whole)
     one.lack = "the recording describes it only in part, because its path and parameters are long";
   return one;
@@ -55,7 +56,8 @@ std::vector<const record::Column*> columnsOf(const record::RecordedStream& strea
 }  // namespace
 
 RunModels::RunModels(const record::Recording& recording, const scene::Scene& scene) {
-  for (const scene::Model& model : scene.models) models_.push_back({static_cast<uint32_t>(models_.size()), 0, model});
+  for (const scene::Model& model : scene.models)
+    models_.push_back({static_cast<uint32_t>(models_.size()), 0, UINT64_MAX, model});
   of_scene_ = static_cast<std::ptrdiff_t>(models_.size());
   readDescriptions(recording.stream("marks"));
   addNameless(recording.stream("orders"));
@@ -66,6 +68,7 @@ RunModels::RunModels(const record::Recording& recording, const scene::Scene& sce
     if (number >= of_number_.size()) of_number_.resize(number + 1);
     of_number_[number].push_back(i);
   }
+  noteLeaving(recording.stream("orders"));
 }
 
 /// Adds the models that the daemon has described. A description that lacks its begin, or is damaged, gives no name.
@@ -104,6 +107,20 @@ void RunModels::addNameless(const record::RecordedStream* orders) {
                                  "the recording does not describe it: an older hapticd made it, or its "
                                  "rows in the stream marks are lost"));
     ticks.erase(ticks.begin(), later);
+  }
+}
+
+/// Notes when models left. A model has left at the latest when another one gets its number.
+void RunModels::noteLeaving(const record::RecordedStream* orders) {
+  for (const std::vector<size_t>& had : of_number_)
+    for (size_t i = 1; i < had.size(); ++i) models_[had[i - 1]].until = models_[had[i]].since;
+  if (orders == nullptr) return;
+  const auto columns = columnsOf(*orders, {"tick", "kind", "target"});
+  for (uint64_t row = 0; !columns.empty() && row < orders->rows(); ++row) {
+    if (orders->number(row, *columns[1]) != double{kReleased}) continue;
+    const double tick = orders->number(row, *columns[0]);
+    const size_t place = find(orders->number(row, *columns[2]), tick);
+    if (place != kNone) models_[place].until = std::min(models_[place].until, wholeTick(tick));
   }
 }
 

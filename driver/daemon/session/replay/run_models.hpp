@@ -16,6 +16,7 @@ namespace hapticd::servo {
 struct RunModel {
   uint32_t number = 0;                  ///< in the columns `model`
   uint64_t since = 0;                   ///< first tick in which the number means this model
+  uint64_t until = UINT64_MAX;          ///< tick in which it left; UINT64_MAX if it stayed
   scene::Model model;                   ///< called "model 7" if the recording does not say more
   std::vector<Fingerprint> files = {};  ///< of a model that came later; those of the scene are in RecordedRun
   std::string lack = {};                ///< why a replay cannot build a model that came later; "" if it can
@@ -43,6 +44,7 @@ class RunModels {
  private:
   void readDescriptions(const record::RecordedStream* marks);
   void addNameless(const record::RecordedStream* orders);
+  void noteLeaving(const record::RecordedStream* orders);
 
   std::vector<RunModel> models_;
   std::ptrdiff_t of_scene_ = 0;                 ///< number of models of the scene

@@ -71,12 +71,9 @@ Json liveParameters(const Session& session, uint32_t place) {
 /// Returns the pose of a model: of a moving model from its newest row, otherwise the pose in which it rests.
 Json poseJson(const Session& session, uint32_t place) {
   PoseRow row;
-  if (session.runner.telemetry().flight()->newestPose(place, row))
+  if (session.runner.telemetry().flight()->newestPose(place, row) && row.tick >= session.places[place].since)
     return {{"position", row.position}, {"orientation", row.orientation}};
-  const scene::Pose& pose = session.places[place].model.pose;
-  const Eigen::Vector3d& p = pose.position;
-  const Eigen::Quaterniond& q = pose.orientation;
-  return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
+  return jsonOf(session.places[place].model.pose);
 }
 
 /// Lists the programs that push on an arm, with the counts of their answers.
@@ -120,6 +117,7 @@ Json modelJson(const Session& session, uint32_t place) {
   const bool deforms = (session.runner.world().shapes()[place]->description().flags & HSP_C_DEFORMS) != 0;
   return {{"name", taken.model.name},
           {"number", place},
+          {"since", taken.since},
           {"plugin", taken.model.plugin},
           {"enabled", taken.enabled},
           {"kinematic", taken.model.kinematic},
@@ -127,6 +125,7 @@ Json modelJson(const Session& session, uint32_t place) {
           {"pose", poseJson(session, place)},
           {"silenced", why.empty() ? Json() : Json(why)},
           {"deforms", deforms},
+          {"tip_radius", scene::numberIn(taken.model.parameters, "tip_radius", 0)},
           {"waits", waitsForTip(session, place)},
           {"end", endJson(nowOf(session, place).at_end)}};
 }
@@ -143,6 +142,12 @@ Json silencedJson(const Session& session) {
 
 std::string lineOf(const Json& json) {
   return document::jsonLine(json);
+}
+
+Json jsonOf(const scene::Pose& pose) {
+  const Eigen::Vector3d& p = pose.position;
+  const Eigen::Quaterniond& q = pose.orientation;
+  return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,

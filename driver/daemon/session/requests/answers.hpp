@@ -18,6 +18,7 @@ namespace hapticd::servo {
 struct ModelPlace {
   scene::Model model;  ///< the model, with the present values of its parameters
   bool taken = false, enabled = true;
+  uint64_t since = 0;  ///< tick from which on it is there. Another model may have had its name and place before.
 };
 
 struct Session {
@@ -29,6 +30,9 @@ struct Session {
 
 /// [any] Writes JSON as one line.
 std::string lineOf(const nlohmann::ordered_json& json);
+
+/// [any] Returns a pose as answers have it.
+nlohmann::ordered_json jsonOf(const scene::Pose& pose);
 
 /// [main] Returns the counts of a pushing program so far.
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,

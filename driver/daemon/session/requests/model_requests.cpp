@@ -182,7 +182,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.target = place;
     order.model = prepared_.back().get();
     const auto given = post(order);
-    places_[place] = {models[i], true, models[i].enabled};
+    places_[place] = {models[i], true, models[i].enabled, tickNow()};
     // The shape is kept even if the servo did not obey in time, because the servo may obey later.
     runner_.world().store(place, std::move(shape), models[i]);
     if (!given) return given;
@@ -239,6 +239,10 @@ void RequestHandler::addWarnings(const control::Peer& peer, const std::vector<sc
     json["warnings"].push_back(tellable(peer, text));
     log_(HSP_LOG_WARNING, "", text);
   }
+}
+
+uint64_t RequestHandler::tickNow() const {
+  return runner_.telemetry().statusWriter()->page().now.read().value_or(status::TickStatus{}).tick;
 }
 
 /// Waits until the servo has run for this time [s], or has ended.

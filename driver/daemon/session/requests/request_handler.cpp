@@ -63,7 +63,7 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
              [this](uint32_t arm, const Leads::Pusher& who, Leads::PushEvent news) { reportPusher(arm, who, news); }) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) {
     const scene::Model& model = runner.scene().models[i];
-    places_[i] = {model, true, model.enabled};
+    places_[i] = {model, true, model.enabled, 0};
   }
 }
 

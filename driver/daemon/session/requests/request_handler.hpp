@@ -93,6 +93,7 @@ class RequestHandler {
   Result<std::string> move(const control::Request& request);
   Result<void> clear(const control::Peer& peer, const std::string& device);
   Result<void> faultAfterClear(const std::string& device);
+  uint64_t tickNow() const;
   void waitForServo(double seconds) const;
   Result<std::string> hold(const std::string& device, const char*& code);
   Result<scene::Scene> loadFor(const control::Peer& peer, const control::Request& request);

@@ -42,14 +42,14 @@ export class Events {
   constructor(list, about, onEvent) {
     this.list = list;
     this.onEvent = onEvent;
-    this.names = (about.scene?.models ?? about.models ?? []).map((m) => m.name);
+    this.models = []; // all models that were ever named, by the ticks from which on they have their numbers
+    this.description = ''; // beginning of the text that describes a model
     this.devices = (about.devices ?? []).map((d) => d.name);
     this.period = 1 / (about.rate_hz || 1000);
     const columns = about.columns ?? {}, readers = (stream, names) => Object.fromEntries(names.map((n) => [n, reader(columns[stream] ?? [], n)]));
     this.order = readers('orders', ['tick', 'kind', 'target', 'value']);
     this.event = readers('events', ['tick', 't', 'kind', 'model', 'probe', 'code', 'value']);
-    this.mark = readers('marks', ['t', 'model', 'text']);
-    this.later = []; // models that came during a recording, in the order of their ticks
+    this.mark = readers('marks', ['tick', 't', 'model', 'left', 'text']);
     this.kinds = about.events ?? [];
     this.told = 'events' in columns; // older recordings have no stream of events
     this.faults = [];
@@ -61,6 +61,7 @@ export class Events {
     this.list.replaceChildren();
     this.touching.clear();
     this.faults = [];
+    this.description = '';
   }
 
   add(t, kind, text) {
@@ -69,8 +70,15 @@ export class Events {
     this.onEvent?.(t, kind);
   }
 
+  /** Learns the names of models. @param models list of {name, index, since} */
+  learn(models) {
+    const known = new Set(this.models.map(({index, since}) => `${index}/${since}`));
+    const fresh = models.map(({name, index, since = 0}) => ({name, index, since})).filter(({index, since}) => !known.has(`${index}/${since}`));
+    if (fresh.length > 0) this.models = [...this.models, ...fresh].sort((a, b) => a.since - b.since);
+  }
+
   name(model, tick = Infinity) {
-    return this.later.findLast((one) => one.number === model && one.tick <= tick)?.name ?? this.names[model] ?? `model ${model}`;
+    return this.models.findLast(({index, since}) => index === model && since <= tick)?.name ?? `model ${model}`;
   }
 
   orders(view, count, rowBytes) {
@@ -96,9 +104,21 @@ export class Events {
 
   marks(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const {t, model, text} = readAll(this.mark, view, i * rowBytes);
-      if (!(model >= 0)) this.add(t, 'mark', text); // others describe a model
+      const mark = readAll(this.mark, view, i * rowBytes);
+      if (mark.model >= 0) this.#describe(mark);
+      else this.add(mark.t, 'mark', mark.text);
     }
+  }
+
+  /** Takes a row of the description of a model that comes. The page may have missed the first rows of it. */
+  #describe({tick, model, left, text}) {
+    this.description += text;
+    if (left > 0) return;
+    const described = this.description;
+    this.description = '';
+    try {
+      this.learn([{name: JSON.parse(described).name, index: model, since: tick}]);
+    } catch { /* the list will have its name */ }
   }
 
   /** For a recording without a stream of events: finds events in the present rows, namely faults that began or ended

@@ -17,13 +17,13 @@ export class Features {
     this.nameless = new Set(); // models whose plugin has no names
   }
 
-  /** Returns the name of a feature; '' if it has no name, or if the name has not come yet. */
-  name(model, feature) {
+  /** Returns the name of a feature of a model; '' if it has no name, or if the name has not come yet. */
+  name({name: model, since = 0} = {}, feature) {
     const key = `${model}/${feature}`, {names, nameless} = this, known = names.get(key);
     if (known !== undefined || model === undefined || nameless.has(model)) return known ?? '';
     if (names.size >= kMostKept) names.clear();
     names.set(key, '');
-    this.ask({do: 'feature', model, number: feature}).then((answer) => {
+    this.ask({do: 'feature', model, since, number: feature}).then((answer) => {
       if (answer.name) names.set(key, answer.name);
       else nameless.add(model);
     }, () => nameless.add(model));

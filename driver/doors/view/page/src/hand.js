@@ -121,7 +121,7 @@ export class Hand {
     const [hit] = caster.intersectObjects([...models.byIndex.values()].map(({mesh}) => mesh), false);
     if (!hit) return ray.at(plane, new Vector3());
     const [model] = [...models.byIndex].find(([, {mesh}]) => mesh === hit.object);
-    return ray.at(Math.max(plane, hit.distance + kPress - (models.balls[model] ?? 0)), new Vector3());
+    return ray.at(Math.max(plane, hit.distance + kPress - models.ball(model)), new Vector3());
   }
 
   #down(e) {

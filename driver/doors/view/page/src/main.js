@@ -2,6 +2,7 @@
 /** The page of hapticd-view. It passes the messages of the connection on to the scene, the plots and the panels. */
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
+import {Drawings} from './drawings.js';
 import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
 import {$, element, fileName, norm, save, short, themeColor} from './format.js';
@@ -29,6 +30,8 @@ class Page {
     this.ask = (request) => this.connection.ask(request);
     this.features = new Features(this.ask);
     this.panel = new Panel(this.ask);
+    this.drawings = new Drawings(this.ask, this.panel);
+    this.drawings.onLack = (text) => this.notice(text);
     this.panel.onRefused = (error) => this.notice(error);
     this.timeline = new Timeline(this.ask);
     this.sound = new Sound();
@@ -37,7 +40,6 @@ class Page {
     this.hello = null;
     this.status = {};
     this.pendingList = null;
-    this.drawn = new Map(); // name -> index of the models whose triangles were requested
     this.paints = {first: performance.now(), scene: 0};
     this.#listen();
     this.#buttons();
@@ -118,7 +120,9 @@ class Page {
     this.#invite(again);
     if (!recorded) this.timeline.show(null);
     else if (again) this.timeline.restore();
-    this.#drawModels((about.scene?.models ?? about.models ?? []).map((m, i) => ({...m, index: i})));
+    this.drawings.list(about.scene?.models ?? about.models ?? []);
+    this.events.learn(this.drawings.listed);
+    this.#drawModels();
     if (this.pendingList) this.#list(this.pendingList); // the list came before there was a view
   }
 
@@ -140,9 +144,8 @@ class Page {
   /** Takes all models out of the scene, and puts the arms of the run into it. @param again true if the camera and the hand stay as they are */
   #emptyScene(about, again) {
     const devices = about.scene?.devices ?? [];
-    this.view.models.clear();
+    this.drawings.begin(this.view, this.now);
     this.features.clear();
-    this.drawn.clear();
     this.view.arms(this.now.arms.length);
     this.armModels = this.now.arms.map(({info}, i) => new ArmModel(devices[i], info));
     this.view.setWorkspaces(devices.map((device, i) => ({
@@ -161,21 +164,10 @@ class Page {
     $('run-tools').hidden = !control;
   }
 
-  /** Requests the triangles of new models. */
-  async #drawModels(models) {
-    const begun = this.now, scene = this.now.about.scene?.models ?? [];
-    const fresh = models.filter((m) => this.drawn.get(m.name) !== m.index);
-    if (fresh.length === 0) return;
-    for (const model of fresh) this.drawn.set(model.name, model.index);
-    for (const model of fresh) { // one after the other, so that few bytes wait in the server
-      const answer = await this.ask({do: 'geometry', model: model.name, triangles: this.view.trianglesOfOne(models.length)});
-      if (begun !== this.now) return;
-      this.panel.drawing(model.name, answer);
-      if (!answer.mesh) this.notice(`${model.name} is not drawn: ${answer.error}`);
-      const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
-      if (answer.mesh) this.view.models.add(model.index, {...model, pose}, answer.mesh);
-    }
-    this.view.measure(scene);
+  /** Draws the models that came, and removes those that left. */
+  async #drawModels() {
+    if (!await this.drawings.draw()) return;
+    this.view.measure();
     this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
@@ -185,22 +177,20 @@ class Page {
   #list(list) {
     this.pendingList = list;
     if (!this.view || !this.now) return;
-    this.panel.show(this.#withValues(list.models), this.hello.control);
-    const models = list.models.map((m, i) => ({...m, index: m.number ?? i}));
-    for (const [name, index] of this.drawn)
-      if (!models.some((m) => m.name === name && m.index === index)) {
-        if (this.view.models.byIndex.get(index)?.name === name) this.view.models.remove(index);
-        this.drawn.delete(name);
-        this.features.clear(); // another part may be added under the same name
-      }
-    this.events.later = list.later ?? [];
-    for (const model of models) {
-      this.events.names[model.index] = model.name;
-      // A model that has moved and now rests has no rows any more, so its pose comes from the list.
-      if (model.pose && !this.now.poses.has(model.index)) this.view.models.move(new Map([[model.index, model.pose]]));
-    }
+    this.drawings.list(this.#withValues(list.models));
+    this.events.learn(this.drawings.listed);
+    this.#showModels();
+  }
+
+  /** Shows the models of the present tick. */
+  #showModels() {
+    const models = this.drawings.present();
+    if (this.drawings.stale()) this.features.clear(); // another part may have the same name
+    this.panel.show(models, this.hello.control);
+    // A model that has moved and now rests has no rows any more, so its pose comes from the list.
+    for (const {index, pose, since} of models) if (pose && !this.now.poseOf(index, since)) this.view.models.move(index, pose);
     this.view.dirty = true;
-    this.#drawModels(models);
+    this.#drawModels();
   }
 
   /** Adds the values of parameters: if the daemon does not report the present value, the value of the scene is taken. */
@@ -237,7 +227,8 @@ class Page {
 
   #update() {
     const {now, view} = this, contacts = now.current();
-    view.models.move(now.poses);
+    if (this.hello.recorded && this.drawings.stale()) this.#showModels();
+    for (const {index, since} of this.drawings.present()) view.models.move(index, now.poseOf(index, since));
     view.models.stain(contacts, kFullStain);
     now.arms.forEach((arm, i) => {
       if (!arm.now) return;
@@ -263,7 +254,7 @@ class Page {
    * farther. */
   #showFoot(contacts) {
     const deepest = contacts.reduce((a, b) => (b.depth > (a?.depth ?? 0) ? b : a), null);
-    const name = deepest ? this.features.name(this.events.name(deepest.model, this.now.tick.tick), deepest.feature) : '';
+    const name = deepest ? this.features.name(this.drawings.of(deepest.model), deepest.feature) : '';
     $('foot').textContent = [name, endText(this.now.arms)].filter((text) => text !== '').join(' · ');
     $('foot').hidden = $('foot').textContent === '';
   }

@@ -46,7 +46,7 @@ export class Models {
   constructor() {
     this.group = new Group();
     this.byIndex = new Map();
-    this.balls = []; // [m] radius of the ball with which each model is touched, 0 for a point; its foot point is so far above the surface
+    this.balls = new Map(); // index -> [m] radius of the ball that touches the model, 0 for a point; its foot point is so far above the surface
   }
 
   /** Removes all models. */
@@ -99,12 +99,15 @@ export class Models {
     model.live.computeBoundingSphere();
   }
 
-  /** Sets the newest poses of the models that move. @param poses Map of index -> {position, orientation} */
-  move(poses) {
-    for (const [index, pose] of poses) {
-      const model = this.byIndex.get(index);
-      if (model) placeMesh(model.mesh, pose);
-    }
+  /** Moves a model, unless its pose is unknown. */
+  move(index, pose) {
+    const model = this.byIndex.get(index);
+    if (model && pose) placeMesh(model.mesh, pose);
+  }
+
+  /** Returns the radius [m] of the ball that touches a model; 0 for a point. */
+  ball(index) {
+    return this.balls.get(index) ?? 0;
   }
 
   /** Colours the surfaces about the present contacts. @param full [m] depth at which the colour is strongest */
@@ -113,7 +116,7 @@ export class Models {
       const mine = contacts.filter((c) => c.model === index && c.depth > 0);
       model.mesh.material.userData.stains.value.forEach((stain, i) => {
         const c = mine[i];
-        if (c) stain.set(...c.point.map((x, k) => x - (this.balls[index] ?? 0) * c.normal[k]), 0.3 + 0.65 * Math.min(1, c.depth / full));
+        if (c) stain.set(...c.point.map((x, k) => x - this.ball(index) * c.normal[k]), 0.3 + 0.65 * Math.min(1, c.depth / full));
         else stain.w = 0;
       });
     }

@@ -64,8 +64,8 @@ export class Probe {
   }
 
   /** Draws the tip as the ball that touches the nearest model; with none near, as the largest one. */
-  #ball(best, {balls}) {
-    this.ball = best ? (balls[best.model] ?? 0) : Math.max(0, ...balls);
+  #ball(best, models) {
+    this.ball = best ? models.ball(best.model) : Math.max(0, ...models.balls.values());
     this.tip.scale.setScalar(this.ball || this.size);
     this.ghost.scale.setScalar((this.ball || this.size) * 1.3);
   }

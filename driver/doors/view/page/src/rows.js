@@ -84,7 +84,7 @@ export class Now {
       feature: reader(c, 'feature'), point: vectorReader(c, 'p'), normal: vectorReader(c, 'n'),
     };
     this.model = reader(p, 'model');
-    this.pose = {position: vectorReader(p, ''), orientation: vectorReader(p, 'q', ['w', 'x', 'y', 'z'])};
+    this.pose = {tick: reader(p, 'tick'), position: vectorReader(p, ''), orientation: vectorReader(p, 'q', ['w', 'x', 'y', 'z'])};
   }
 
   table(name) { return this.tables.find((t) => t.name === name); }
@@ -92,7 +92,14 @@ export class Now {
   clear() {
     for (const table of this.tables) table.clear();
     this.contacts.clear();
+    this.poses.clear();
     this.tick.tick = -1;
+  }
+
+  /** Returns the newest pose of a model that has its number since a tick; undefined if it has not moved. */
+  poseOf(index, since = 0) {
+    const pose = this.poses.get(index);
+    return pose && !(pose.tick < since) ? pose : undefined;
   }
 
   /** Takes a message of rows. Returns the table to which the rows were added. */

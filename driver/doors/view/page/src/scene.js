@@ -90,12 +90,10 @@ export class View {
     });
   }
 
-  /** Sets the sizes of tip, floor and stains by the size of the scene. A tip that has a radius is drawn with it.
-   * @param models the models of the scene with their parameters */
-  measure(models) {
+  /** Sets the sizes of tip, floor and stains by the size of the scene. */
+  measure() {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
-    this.models.balls = models.map(({parameters}) => parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0);
     for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006));
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
     this.floor = '';

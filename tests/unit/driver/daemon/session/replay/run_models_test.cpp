@@ -98,7 +98,7 @@ class RunModelsTest : public testing::Test {
   std::unique_ptr<record::Recording> recording_;
 };
 
-constexpr auto kCame = static_cast<uint32_t>(Order::Kind::kAdopt);
+constexpr auto kCame = static_cast<uint32_t>(Order::Kind::kAdopt), kLeft = static_cast<uint32_t>(Order::Kind::kRelease);
 
 TEST_F(RunModelsTest, ANumberMeansTheModelOfItsTick) {
   std::vector<MarkRow> marks = described(100, 2, jsonOf("third \xc3\xa4"));
@@ -114,6 +114,14 @@ TEST_F(RunModelsTest, ANumberMeansTheModelOfItsTick) {
   EXPECT_EQ(models.all()[2].model.plugin, "nurbs_rigid");
   EXPECT_EQ(models.find(2, 99), RunModels::kNone);
   EXPECT_EQ(models.nameOf(2, 99), "model 2");
+}
+
+TEST_F(RunModelsTest, AModelIsThereUntilItLeavesOrItsNumberHasAnotherOne) {
+  const RunModels models = of(described(100, 0, jsonOf("third")), {{90, kLeft, 1}, {101, kCame, 0}, {200, kLeft, 0}});
+  ASSERT_EQ(models.all().size(), 3u);
+  EXPECT_EQ(models.all()[0].until, 100u);  // the row of its leaving is lost
+  EXPECT_EQ(models.all()[1].until, 90u);
+  EXPECT_EQ(models.all()[2].until, 200u);
 }
 
 TEST_F(RunModelsTest, AModelWithoutADescriptionHasNotTheNameOfTheOneBefore) {
