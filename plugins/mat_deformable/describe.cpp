@@ -118,6 +118,16 @@ std::string line(const Group& group, const char* who, const std::string& spring)
   return text;
 }
 
+/// Returns a warning: a ball touches, but the stiffness is that of a flat tip of another radius.
+std::string otherTip(double flat, double ball) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "probe_radius: young, poisson and thickness were converted for a flat tip of radius %.4g mm, but the "
+                "ball that touches has %.4g mm (tip_radius): if both are the same tip, write probe_radius: %.4g",
+                1e3 * flat, 1e3 * ball, ball);
+  return text;
+}
+
 /// Returns the default of a parameter.
 double usual(std::string_view id) {
   for (const auto& field : MatDeformable::fields())
@@ -152,8 +162,8 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
           HSP_LOG_WARNING,
           std::string(id) + ": has no effect: " + geometry_ +
               " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
-  if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
-    writeLog(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
+  if (file.grid && rings_ != static_cast<int>(usual("rings")))
+    writeLog(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh has rings; for a grid, set influence");
   if (friction_static_ > 0 && friction_static_ < friction_dynamic_)
     writeLog(
         HSP_LOG_WARNING,
@@ -175,8 +185,8 @@ void MatDeformable::describeDynamics(const MedialFile& file) const {
           : dynamics == kSeen ? "seen: the body swings when it is drawn, but the hand feels a body at rest"
                               : "off: the body follows the probe at once, and the force is that of a body at rest";
   if (by_file)
-    text += without ? " (the default for .ma files; with dynamics: felt the hand feels it)"
-                    : " (the default for files of this format)";
+    text += std::string(without ? " (the default for .ma files" : " (the default for files of this format") +
+            (dynamics == kSeen ? "; with dynamics: felt the hand feels it)" : ")");
   writeLog(HSP_LOG_DEBUG, text);
   if (dynamics != kFelt && relaxation_share_ > 0)
     writeLog(HSP_LOG_WARNING, std::string("relaxation.share: has no effect: dynamics is ") +
@@ -199,20 +209,31 @@ medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point
   return file.grid ? of(*file.grid) : of(*file.mesh);
 }
 
+/// Returns what gives the stiffness of the body, such as "the file".
+std::string MatDeformable::sourceOf(const MedialFile& file) const {
+  if (geometry_.ends_with(".ma")) return "the scene";
+  if (!file.layered) return "the file";
+  char text[64];
+  std::snprintf(text, sizeof text, "young for a flat tip of radius %.4g mm", 1e3 * probe_radius_);
+  return text;
+}
+
 /// Writes a line for each material at level debug, and a hint if a hand feels another stiffness than the file says.
 void MatDeformable::describeMaterial(const MedialFile& file, double tick) const {
   double most = 1;
-  const bool felt = body_->feltSurface() != nullptr, without = geometry_.ends_with(".ma");
+  const bool felt = body_->feltSurface() != nullptr;
   std::vector<Place> places;
   for (const FeltMaterial& one : body_->feltMaterial()) places.push_back({one, tissueAt(file, places.size())});
   std::size_t lines = 0;
   for (const Group& group : grouped(std::move(places))) {
     if (++lines <= kMostLines)
-      writeLog(HSP_LOG_DEBUG, line(group, without ? "the scene" : "the file",
-                                   felt ? springText(group.tissue, contact_ratio_, tick) : ""));
+      writeLog(HSP_LOG_DEBUG,
+               line(group, sourceOf(file).c_str(), felt ? springText(group.tissue, contact_ratio_, tick) : ""));
     if (group.first.told > 0) most = std::max(most, group.first.deep / group.first.told);
   }
   if (felt) describeContact(file, tick);
+  if (file.layered && tip_radius_ > 0 && tip_radius_ != probe_radius_)
+    writeLog(HSP_LOG_WARNING, otherTip(probe_radius_, tip_radius_));
   if (file.grid && file.revision >= 2 && shear_offset_ != kUsualShearOffset)
     writeLog(HSP_LOG_WARNING,
              geometry_ + ": shear_offset has no effect on files of format hapticd-model/2; use shear_distance");

@@ -170,6 +170,7 @@ class MatDeformable final : public Shape {
   static const void* stateExtension();
   void describe(const MedialFile& file, double tick) const;
   void describeMaterial(const MedialFile& file, double tick) const;
+  std::string sourceOf(const MedialFile& file) const;
   void describeDynamics(const MedialFile& file) const;
   void describeContact(const MedialFile& file, double tick) const;
   /// Returns the material of a point of the file. Its relaxation comes from the parameters.

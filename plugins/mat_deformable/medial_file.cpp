@@ -56,6 +56,7 @@ class Reader {
     const auto medial = root.find("medial");
     if (medial == root.end() || !medial->is_object())
       return problems_.add(at, "expected a mapping with points, radius and stiffness, or vertices and stiffness");
+    file.layered = medial->contains("young");
     if (medial->contains("vertices")) {
       readMesh(*medial, at, file.mesh.emplace());
     } else {

@@ -18,6 +18,7 @@ struct MedialFile {
   std::optional<medial::MeshBodyData> mesh;
   int revision = 1;                    ///< version of the format: 1 for hapticd-model/1, 2 for hapticd-model/2
   bool swings = false, damps = false;  ///< true if some point has mass; if some point has damping
+  bool layered = false;                ///< true if the stiffness was converted from young, poisson and thickness
   std::vector<std::string> odd;        ///< warnings of warnOfMedialFile()
 };
 

@@ -29,6 +29,7 @@ struct ImportArguments {
   bool medial = false;
   MedialImport body;
   std::string answers, dents;  ///< input for the calibration of a soft body
+  std::string material;        ///< first option that was given for the material of a soft body, or ""
   double smooth_angle = 0;
   CadImport cad;
   bool json = false;
@@ -54,6 +55,10 @@ std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (options.medial && turned)
     return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
+  if (!options.material.empty() && std::filesystem::path(options.out).extension() == ".ma")
+    return options.material +
+           " has no effect: a .ma file holds no material, expected a file to write that ends in .yaml; of a .ma "
+           "file the scene gives stiffness, damping and mass";
   if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
     return "--outward has an effect only with .bpt files; triangles and CAD faces are turned outward by the volume "
            "that they enclose";
@@ -164,6 +169,30 @@ int importModel(const ImportArguments& options) {
   return importPatches(options, placement);
 }
 
+/// The material of a soft body. Only a model file (.yaml) holds it: that of a .ma file stands in the scene.
+constexpr const char* kMaterial[] = {"--stiffness", "--young", "--poisson", "--thickness", "--damping", "--mass"};
+
+void addMaterialOptions(const Command& command, const Option& medial, MedialImport& body) {
+  const Option stiffness =
+      command.addOption("--stiffness", body.stiffness, "stiffness [N/m], written to a .yaml file; default: 300")
+          .within(0.0, 1e6)
+          .needs(medial);
+  const Option young =
+      command
+          .addOption("--young", body.young, "Young's modulus of tissue on something rigid [Pa], instead of --stiffness")
+          .within(1.0, 1e9)
+          .needs(medial)
+          .excludes(stiffness);
+  command.addOption("--poisson", body.poisson, "its Poisson's ratio; default: 0.45").within(0.0, 0.5).needs(young);
+  command.addOption("--thickness", body.thickness, "its thickness [m]; default: 0.02").within(1e-5, 1.0).needs(young);
+  command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file; default: 0.5")
+      .within(0.0, 1e6)
+      .needs(medial);
+  command.addOption("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file; default: 0.01")
+      .within(0.0, 1e6)
+      .needs(medial);
+}
+
 void addMedialOptions(const Command& command, ImportArguments& options) {
   MedialImport& body = options.body;
   const Option medial = command.addFlag("--medial", options.medial,
@@ -183,15 +212,7 @@ void addMedialOptions(const Command& command, ImportArguments& options) {
                  "toward edges; default: 60")
       .within(0.0, 180.0)
       .needs(medial);
-  command.addOption("--stiffness", body.stiffness, "stiffness [N/m], written to a .yaml file")
-      .within(0.0, 1e6)
-      .needs(medial);
-  command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file")
-      .within(0.0, 1e6)
-      .needs(medial);
-  command.addOption("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
-      .within(0.0, 1e6)
-      .needs(medial);
+  addMaterialOptions(command, medial, body);
   const Option calibrate =
       command
           .addOption("--calibrate", options.answers,
@@ -258,7 +279,11 @@ void addImport(const Command& app, int& exit_code) {
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
       "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
       "0.001 --tolerance 0.001 hand.ma");
-  command.callback([options, &exit_code] { exit_code = importModel(*options); });
+  command.callback([options, command, &exit_code] {
+    for (const char* one : kMaterial)
+      if (options->material.empty() && command.given(one)) options->material = one;
+    exit_code = importModel(*options);
+  });
 }
 
 }  // namespace hapticd::cli

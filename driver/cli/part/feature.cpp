@@ -2,6 +2,7 @@
 #include "cli/part/feature.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -144,6 +145,19 @@ std::string triangleText(const Model& model, const brep::Placement& place, std::
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> featureCalled(const brep::Part& part, const std::string& asked) {
+  std::uint32_t number = 0;
+  const char* end = asked.data() + asked.size();
+  const auto read = std::from_chars(asked.data(), end, number);
+  const bool is_number = read.ptr == end && read.ec == std::errc();
+  if (is_number) return brep::featureName(part, number).empty() ? std::nullopt : std::optional(number);
+  for (std::uint32_t i = 0;; ++i) {
+    const std::string name = brep::featureName(part, i);
+    if (name.empty()) return {};
+    if (("/" + name + " '").find("/" + asked + " '") != std::string::npos) return i;  // "face 3" may have a name
+  }
+}
 
 std::string featureText(const brep::Part& part, std::uint32_t feature) {
   const Model model{brep::Part(part)};

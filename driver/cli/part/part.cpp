@@ -242,14 +242,16 @@ void print(const std::string& file, const Json& info) {
   for (const Json& warning : info["warnings"]) std::printf("  %s\n", warning.get<std::string>().c_str());
 }
 
-int printFeature(const std::string& file, const Part& part, std::uint32_t feature) {
-  const std::string name = brep::featureName(part, feature);
-  if (name.empty())
-    return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
+int printFeature(const std::string& file, const Part& part, const std::string& asked) {
+  const auto feature = featureCalled(part, asked);
+  if (!feature)
+    return fail(kBadInput, file + ": has no feature '" + asked +
+                               "', expected a number, or a name as messages have it, such as '" +
+                               brep::featureName(part, 0) + "'; hapticd part info " + file +
                                " says which features each instance has");
-  std::printf("%s\n", name.c_str());
+  std::printf("%s\n", brep::featureName(part, *feature).c_str());
   try {
-    std::printf("  %s\n", featureText(part, feature).c_str());
+    std::printf("  %s\n", featureText(part, *feature).c_str());
   } catch (const std::invalid_argument& error) {
     std::printf("  %s\n", error.what());
   }
@@ -275,7 +277,7 @@ int printAxes(const std::string& file, const Part& part) {
 struct InfoArguments {
   std::string file;
   bool json = false, axes = false;
-  std::optional<std::uint32_t> feature;
+  std::string feature;  ///< its number, or its name as messages have it
 };
 
 int partInfo(const InfoArguments& options) {
@@ -290,7 +292,7 @@ int partInfo(const InfoArguments& options) {
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
     Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
-    if (options.feature) return printFeature(file, part, *options.feature);
+    if (!options.feature.empty()) return printFeature(file, part, options.feature);
     if (options.axes) return printAxes(file, part);
     Json info = describe(part, bytes->size());
     addMeasures(info, std::move(part));
@@ -315,8 +317,10 @@ void addPart(const Command& app, int& exit_code) {
   const Command info = command.addSubcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
   info.addOption("part", options->file, "a part file (.hpart)").required();
   info.addFlag("--json", options->json, "print JSON");
-  info.addOption("--feature", options->feature,
-                 "print only this feature (column feature of a trace): its instance and face, its kind, size and place")
+  info.addOption(
+          "--feature", options->feature,
+          "print only this feature: its instance and face, its kind, size and place; its number (column feature of a "
+          "trace), or its name, such as 'bolt: face 3'")
       .excludes("--json");
   info.addFlag("--axes", options->axes,
                "print only the axes of the round faces of each instance, as the keys of a scene that make a hinge")

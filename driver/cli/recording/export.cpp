@@ -84,13 +84,14 @@ struct ExtraTable {
   NameTable table;
 };
 
-/// Returns the tables with names that stand in the folder beside those of the streams; none if the description of the
-/// run cannot be read.
+/// Returns the tables that stand in the folder beside those of the streams; without names if the description of the run
+/// cannot be read.
 std::vector<ExtraTable> extraTables(const record::Recording& recording, const std::filesystem::path& folder) {
+  std::vector<ExtraTable> all{{(folder / "columns.csv").string(), kColumnsHeader, columnsTable(recording)}};
   const auto run = servo::readAbout(recording.aboutJson());
-  if (!run) return {};
+  if (!run) return all;
   const servo::RunModels models(recording, run->scene);
-  std::vector<ExtraTable> all{{(folder / "models.csv").string(), kModelsHeader, modelsTable(models)}};
+  all.push_back({(folder / "models.csv").string(), kModelsHeader, modelsTable(models)});
   NameTable joints = jointsTable(recording, models);
   if (joints.rows > 0) all.push_back({(folder / "joints.csv").string(), kJointsHeader, std::move(joints)});
   return all;

@@ -19,6 +19,17 @@ NameTable modelsTable(const servo::RunModels& models) {
   return table;
 }
 
+NameTable columnsTable(const record::Recording& recording) {
+  NameTable table{std::string(kColumnsHeader) + "\n", 0};
+  for (const record::RecordedStream& stream : recording.streams())
+    for (const record::Column& column : stream.columns()) {
+      table.text +=
+          fmt::format("{},{},{},{}\n", stream.name(), column.name, csvField(column.unit), csvField(column.doc));
+      ++table.rows;
+    }
+  return table;
+}
+
 NameTable jointsTable(const record::Recording& recording, const servo::RunModels& models) {
   NameTable table{std::string(kJointsHeader) + "\n", 0};
   TickTimes times(recording);

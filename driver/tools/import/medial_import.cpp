@@ -64,8 +64,10 @@ std::string toYaml(const MedialAxis& axis, const MedialImport& options, const st
   for (const auto& e : axis.edges) text += fmt::format("    - [{}, {}]\n", e[0], e[1]);
   if (!axis.triangles.empty()) text += "  triangles:\n";
   for (const auto& t : axis.triangles) text += fmt::format("    - [{}, {}, {}]\n", t[0], t[1], t[2]);
-  return text +
-         fmt::format("  stiffness: {}\n  damping: {}\n  mass: {}\n", options.stiffness, options.damping, options.mass);
+  text += options.young > 0 ? fmt::format("  young: {}\n  poisson: {}\n  thickness: {}\n", options.young,
+                                          options.poisson, options.thickness)
+                            : fmt::format("  stiffness: {}\n", options.stiffness);
+  return text + fmt::format("  damping: {}\n  mass: {}\n", options.damping, options.mass);
 }
 
 struct Deviation {

@@ -17,6 +17,8 @@ struct MedialImport {
   int most_spheres = 2000;
   double least_angle = 60;  ///< [degrees] see MedialOptions
   double stiffness = 300, damping = 0.5, mass = 0.01;
+  /// [Pa], 1, [m] of a layer of tissue, instead of the stiffness; young 0: not given
+  double young = 0, poisson = 0.45, thickness = 0.02;
 };
 
 /// [main] Reads the closed surface of `options.file`. An error means that the file or a file name is wrong.

@@ -53,6 +53,12 @@ def names():
     check("two of them have numbers", "instance 'block 1': body 0" in info and "instance 'block 2': body 0" in info, info)
 
 
+def written_without_a_name():
+    """Open CASCADE names a product after itself if its program gave no name."""
+    _, _, info = told("box.step")
+    check("it has the name of its file", "STEP translator" in open(join("box.step")).read() and "instance 'box': body 0" in info, info)
+
+
 def axes():
     """The axes about which a scene can turn a body, without knowing the numbers of faces."""
     told("assembly.step")
@@ -190,6 +196,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, names, axes, crossed_axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
+for part_of_the_test in (units, names, written_without_a_name, axes, crossed_axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()

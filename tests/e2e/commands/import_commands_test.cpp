@@ -200,7 +200,14 @@ TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
       "72.5, 60) mm, axis through (90, 75, 60) mm along (1, 0, 0)\n  to turn about it in a scene:    joint: hinge, "
       "pivot: [0.09, 0.075, 0.06], axis: [1, 0, 0]\n");
   EXPECT_TRUE(has(run("part info " + part + " --feature 18").text, "middle at (90, 77.5, 60) mm")) << "the other half";
-  EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
+  const std::string face = run("part info " + part + " --feature 17").text;
+  for (const char* name : {"as1/rod-assembly_1/rod_1: face 1", "rod_1: face 1"})
+    EXPECT_EQ(run("part info " + part + " --feature '" + name + "'").text, face) << name;
+  for (const char* none : {"160", "rod_1: face 4", "rod: face 1", "99999999999", "-1"}) {
+    const Outcome missing = run("part info " + part + " --feature='" + none + "'");
+    EXPECT_EQ(missing.exit_code, 2) << none;
+    EXPECT_TRUE(has(missing.text, "has no feature '" + std::string(none) + "'")) << missing.text;
+  }
   const std::string scene =
       put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
                           ", instance: rod-assembly_1}}\n");

@@ -131,6 +131,20 @@ def recoverCapsule(folder):
     check("it is felt where its surface was", code == 0 and abs(depth - (.01 - .00802)) < 3e-4, f"{depth} {text}")
 
 
+def tissue(folder):
+    """The stiffness of a layer of tissue under a flat tip, by the formula of deformable.md: kappa is 1 on a thick layer."""
+    young, poisson, tip = 10e3, .45, .003
+    code, text = hapticd("import", "--medial", os.path.join(folder, "capsule.obj"), os.path.join(folder, "tissue.yaml"), "--young", f"{young}",
+                         "--poisson", f"{poisson}", "--thickness", "1", *FEWER)
+    check("tissue is imported", code == 0, text)
+    scene = save(os.path.join(folder, "scene.yaml"), "hapticd: 1\nmodels:\n  - {name: body, plugin: mat_deformable, "
+                 f"parameters: {{geometry: tissue.yaml, probe_radius: {tip}}}}}\n")
+    code, text = hapticd("explain", scene)
+    said = re.search(r"felt ([\d.]+) N/m 1 mm deep.*young for a flat tip of radius 3 mm", text)
+    expected = 2 * young * tip / (1 - poisson**2)
+    check("it is felt as stiff as the formula says", said and abs(float(said[1]) / expected - 1) < .01, (expected, text))
+
+
 def recoverBranches(folder):
     """From the shipped branching body: its own triangles, drawn and read again."""
     out = os.path.join(folder, "branch.ma")
@@ -333,6 +347,10 @@ def refuse(folder):
     check("a file that is not there is refused", code == 2 and "none.obj" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.txt"))
     check("an output of another kind is refused", code == 2 and ".ma or .yaml" in said, said)
+    code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.ma"), "--mass", "0.1")
+    check("a material for a file without materials is refused", code == 2 and "--mass has no effect" in said and "ends in .yaml" in said, said)
+    code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.yaml"), "--poisson", "0.4")
+    check("Poisson's ratio alone is refused", code == 2 and "--young" in said, said)
 
 
 def fullDisk(folder):
@@ -354,6 +372,6 @@ def fullDisk(folder):
 
 
 with tempfile.TemporaryDirectory() as work:
-    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, repairFirst, refuse, fullDisk):
+    for case in (recoverTorus, recoverCapsule, tissue, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, repairFirst, refuse, fullDisk):
         case(work)
 finish()

@@ -77,6 +77,10 @@ def aDoorStandsAtItsStop(folder):
     drawn = open(picture).read() if code == 0 else ""
     check("plot draws the angle and the stops", ">angle of door<" in drawn and ">end stop: 0 rad<" in drawn and ">end stop: 0.6 rad<" in drawn, told)
     check("models.csv has the names of the numbers", open(os.path.join(table, "models.csv")).read() == "model,name,plugin,from_tick\n0,door,nurbs_rigid,0\n")
+    with open(os.path.join(table, "columns.csv"), newline="", encoding="utf-8") as rows:
+        units = {(row["stream"], row["column"]): (row["unit"], row["meaning"]) for row in csv.DictReader(rows)}
+    expected = {(stream, one["name"]): (one["unit"], one["doc"]) for stream, columns in about["columns"].items() for one in columns}
+    check("columns.csv has unit and meaning of every column", units == expected, set(units.items()) ^ set(expected.items()))
     code, told = hapticd("explain", file, "--json")
     check("explain of a recording refuses --json", code == 2 and "explained in words alone" in told, told)
 

@@ -37,6 +37,7 @@ std::string nameOf(const TDF_Label& label) {
   // Open CASCADE gives these names to shapes that have none.
   for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})
     if (text == kind) return "";
+  if (text.rfind("Open CASCADE STEP translator", 0) == 0) return "";  // and this one to files that it writes without
   return brep::plainText(std::move(text));
 }
 

@@ -62,5 +62,30 @@ TEST(TipRadius, OutsideTheGapOfTheBallIsThatOfThePointLessTheRadius) {
   }
 }
 
+/// Warnings of a mesh in a model file when it is activated.
+std::string warned(const char* material, std::initializer_list<std::pair<const char*, double>> parameters) {
+  const TemporaryFile file("tissue.yaml",
+                           "format: hapticd-model/2\nmedial:\n  vertices: [[-0.05, 0, 0, 0.01], [0.05, 0, 0, 0.01]]\n"
+                           "  edges: [[0, 1]]\n  " +
+                               std::string(material) + "\n");
+  Plugin body(file.path());
+  for (const auto& [id, value] : parameters) EXPECT_EQ(body.set(id, value), HSP_OK);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(body.activate(), HSP_OK);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(TipRadius, WarnsIfTheStiffnessIsThatOfATipOfAnotherRadius) {
+  const std::string tissue = "young: 10e3\n  poisson: 0.45\n  thickness: 0.02";
+  EXPECT_NE(warned(tissue.c_str(), {{"tip_radius", 3e-3}}).find("write probe_radius: 0.003"), std::string::npos);
+  EXPECT_EQ(warned(tissue.c_str(), {{"tip_radius", 3e-3}, {"probe_radius", 3e-3}}), "");
+  EXPECT_EQ(warned(tissue.c_str(), {}), "") << "a point has no radius of its own";
+  EXPECT_EQ(warned("stiffness: 300", {{"tip_radius", 3e-3}}), "");
+}
+
+TEST(MatDeformable, AMeshOfAModelFileHasRings) {
+  EXPECT_EQ(warned("stiffness: 300", {{"rings", 5}}), "");
+}
+
 }  // namespace
 }  // namespace hapticd::test
