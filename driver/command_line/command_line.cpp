@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "command_line/meant.hpp"
+#include "command_line/did_you_mean.hpp"
 #include "command_line/option_texts.hpp"
 
 namespace hapticd::command_line {
@@ -49,7 +49,8 @@ Option Option::wholeWithin(int low, int high) const {
 Option Option::oneOf(const std::vector<std::string>& words) const {
   const auto refuse = [words](const std::string& text) {
     if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
-    return fmt::format("\"{}\" is not known, expected one of {}{}", text, fmt::join(words, ", "), meant(text, words));
+    return fmt::format("\"{}\" is not known, expected one of {}{}", text, fmt::join(words, ", "),
+                       didYouMean(text, words));
   };
   return Option(option_->check(CLI::Validator(refuse, fmt::format("{{{}}}", fmt::join(words, ",")))));
 }
@@ -302,11 +303,11 @@ std::string unexpected(const CLI::App& app, const std::vector<std::string>& word
   const std::string word = words.size() > (plain ? 1 : 0) ? words[plain ? 1 : 0] : "";
   if (!plain && namesOption(word)) {
     const std::string name = word.substr(0, word.find('='));
-    return "there is no option " + name + meant(name, optionNames(app));
+    return "there is no option " + name + didYouMean(name, optionNames(app));
   }
   if (const auto names = subcommandNames(app); !names.empty())
     return fmt::format("there is no subcommand \"{}\", expected one of {}{}", word, fmt::join(names, ", "),
-                       meant(word, names));
+                       didYouMean(word, names));
   const std::string more = fmt::format("unexpected word \"{}\": `{}` takes ", word, wordsOf(app));
   const bool digits = !word.empty() && word.find_first_not_of("0123456789.,-+eE") == word.npos;
   const char* list = digits ? "; the numbers of one option are separated by commas, without blanks: 0.21,0.17" : "";

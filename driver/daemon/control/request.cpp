@@ -82,7 +82,7 @@ std::string listed(const std::vector<std::string>& names) {
   return list;
 }
 
-std::string meant(const std::string& word, const std::vector<std::string>& known) {
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
   const std::string nearest = nearestWord(word, known);
   return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
 }
@@ -250,7 +250,7 @@ std::string wrongKeys(const Json& json, const RequestForm& form) {
   size_t unknown = 0;
   for (const auto& [key, value] : json.items())
     if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0 && ++unknown <= kMostNamed)
-      add(shown(key) + " is not a key of \"" + form.word + "\"" + meant(key, known));
+      add(shown(key) + " is not a key of \"" + form.word + "\"" + didYouMean(key, known));
   if (unknown > kMostNamed) add("nor are " + std::to_string(unknown - kMostNamed) + " others");
   if (unknown > 0)
     wrong += ", expected " + (known.empty() ? "no other key than \"do\" and \"id\"" : "the keys " + listed(known));
@@ -347,7 +347,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
     const bool text = word != json.end() && word->is_string();
     return Error{"\"do\": expected one of " + listed(words()) +
                  (word != json.end() ? ", got " + shown(*word) : ", but the key is missing") +
-                 (text ? meant(word->get_ref<const std::string&>(), words()) : "")};
+                 (text ? didYouMean(word->get_ref<const std::string&>(), words()) : "")};
   }
   if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
   Request request;

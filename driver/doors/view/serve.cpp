@@ -12,7 +12,7 @@
 #include <cstdio>
 
 #include "foxglove.hpp"
-#include "native.hpp"
+#include "page_protocol.hpp"
 #include "server.hpp"
 #include "stage.hpp"
 #include "status/page_file.hpp"
@@ -107,7 +107,7 @@ class Heartbeat {
 };
 
 std::unique_ptr<PeerSession> startSession(Subprotocol protocol, Peer& peer, Stage& stage) {
-  return protocol == Subprotocol::kFoxglove ? startFoxgloveSession(peer, stage) : startNativeSession(peer, stage);
+  return protocol == Subprotocol::kFoxglove ? startFoxgloveSession(peer, stage) : startPageSession(peer, stage);
 }
 
 }  // namespace

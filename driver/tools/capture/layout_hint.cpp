@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "capture/byte_in_front.hpp"
+#include "capture/leading_byte.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -190,7 +190,7 @@ std::string hexByte(int byte) {
 
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   if (wire.framing.used) return "";
-  if (const std::string front = byteInFront(wire, capture); !front.empty()) return front;
+  if (const std::string front = leadingByte(wire, capture); !front.empty()) return front;
   if (capture.text && idWasCounted(wire, decoded)) return sizeCountsTheId(wire);
   if (decoded.good() == 0 && linesLackTheId(wire, capture)) return idIsMissing(wire.input.id);
   if (const std::string other = otherIdHint(wire, decoded); !other.empty()) return other;

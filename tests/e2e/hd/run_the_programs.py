@@ -228,7 +228,7 @@ def six(folder):
     with open(os.path.join(folder, "six-arm.yaml"), "w") as file:
         file.write(SIX_ARM)
     with ArmDaemon(folder, "six", SIX.format(folder=folder)) as daemon, daemon.connect() as client:
-        done = daemon.program("six")
+        done = daemon.program("six_joints")
         ticks, pushes = client.rows("ticks", last=5000), client.rows("pushes", last=1000)
     saw = [float(word) for word in done.stdout.split("saw ")[1].split()]
     _, at_push, at_tick = numpy.intersect1d(pushes["tick"], ticks["tick"], return_indices=True)
@@ -265,12 +265,12 @@ def outage(folder):
     daemon.stop()
 
 
-def told(folder):
+def unfeltForce(folder):
     """A hold, and a force beyond the limit."""
-    with ArmDaemon(folder, "told", scene(hand="{script: guided}")) as daemon, daemon.connect() as client:
-        daemon.program("told", "limit")
+    with ArmDaemon(folder, "unfelt-force", scene(hand="{script: guided}")) as daemon, daemon.connect() as client:
+        daemon.program("unfelt_force", "limit")
         client.clear()
-        program = subprocess.Popen(daemon.command("told", "hold"), env=daemon.environment, stdout=subprocess.PIPE,
+        program = subprocess.Popen(daemon.command("unfelt_force", "hold"), env=daemon.environment, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         while (line := program.stdout.readline()) not in ("ready\n", ""):
             print(line, end="")
@@ -280,7 +280,7 @@ def told(folder):
         if "held" not in (client.status()["devices"][0]["no_force"] or ""):
             return print("SKIPPED: the machine stood still, and a fault of that came before the hold")
         print(rest, end="")
-        check("told hold", program.returncode == 0, program.returncode)
+        check("unfelt_force hold", program.returncode == 0, program.returncode)
         check("stderr says what to do about a hold", "is held" in hints and "hapticd ctl clear" in hints, hints)
         client.clear()
 
@@ -354,7 +354,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     two_arms(place)
     six(place)
     outage(place)
-    told(place)
+    unfeltForce(place)
     refused(place)
     command(place)
     killed(place)

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "diagnostics/hand/two_hands.hpp"
+#include "diagnostics/hand/hand_given_twice.hpp"
 #include "diagnostics/reading/number_slips.hpp"
 #include "diagnostics/scene/setting_plausibility.hpp"
 #include "diagnostics/scene/value_plausibility.hpp"
@@ -31,7 +31,7 @@ void warnOfSlips(const std::filesystem::path& file, document::Problems& warnings
   warnOfZeros(*root, file.string(), warnings);
   warnOfTurns(*root, file.string(), warnings);
   warnOfMounts(*root, file.string(), warnings);
-  warnOfTwoHands(*root, file.string(), warnings);
+  warnOfHandGivenTwice(*root, file.string(), warnings);
 }
 
 void addImplausible(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "diagnostics/hand/hands_of_rest.hpp"
+#include "diagnostics/hand/hands_beside_problems.hpp"
 #include "diagnostics/reading/given_values.hpp"
 #include "diagnostics/reading/model_of_key.hpp"
 #include "hapticd/shape.h"
@@ -87,7 +87,7 @@ document::Problems DraftModels::hands(const ModelTrial& trial, const document::P
       unsound[*model] = true;
   moved = std::find(unsound.begin(), unsound.end(), false) != unsound.end();
   document::Problems warnings =
-      warnOfHandsOfRest(draft, trial.boxes, unsound, placed, catalog_, known == KnownHands::kMotion);
+      warnOfHandsBesideProblems(draft, trial.boxes, unsound, placed, catalog_, known == KnownHands::kMotion);
   dropOfCurves(curved, warnings);
   return warnings;
 }

@@ -12,7 +12,7 @@
 #include "diagnostics/hand/fast_hands.hpp"
 #include "diagnostics/hand/hand_path_warnings.hpp"
 #include "diagnostics/hand/hand_start.hpp"
-#include "diagnostics/hand/hands_of_rest.hpp"
+#include "diagnostics/hand/hands_beside_problems.hpp"
 #include "diagnostics/hand/pass_through.hpp"
 #include "diagnostics/reading/model_of_key.hpp"
 #include "diagnostics/scene/arm_bounds.hpp"
@@ -43,7 +43,7 @@ document::Problems warningsOfHands(scene::Scene full, const ModelTrial& trial, h
       refused[*model] = true, curved[*model] = false;
   result.hands_moved = true;
   document::Problems warnings =
-      warnOfHandsOfRest(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog);
+      warnOfHandsBesideProblems(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog);
   dropOfCurves(curved, warnings);
   return warnings;
 }

@@ -6,9 +6,9 @@
 
 #include "codec/wire_overlap.hpp"
 #include "diagnostics/device/device_trial.hpp"
+#include "diagnostics/device/device_wire.hpp"
 #include "diagnostics/device/enable_button.hpp"
 #include "diagnostics/device/slow_arm.hpp"
-#include "diagnostics/device/wire_of.hpp"
 #include "document/reader.hpp"
 #include "scene/load.hpp"
 #include "servo/safety/held_command.hpp"

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "diagnostics/device/arm_table.hpp"
+#include "diagnostics/device/corrected_keys.hpp"
 #include "diagnostics/device/decimal_commas.hpp"
 #include "diagnostics/device/enable_button.hpp"
-#include "diagnostics/device/meant_tree.hpp"
 #include "diagnostics/device/unit_warnings.hpp"
 #include "document/node.hpp"
 #include "host/call_trail.hpp"
@@ -192,9 +192,9 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   document::Problems unread;  // not reported here, because the loader of the file reports them
   auto root = document::readFileOn(file, unread);
   if (!root) return problems;
-  root = withMeantParameters(std::move(*root), *draft);
+  root = withCorrectedParameters(std::move(*root), *draft);
   const Node* parameters = root->find("parameters");
-  checkEnableButton(withMeantWire(*root, *draft), file.string(), problems);
+  checkEnableButton(withCorrectedWire(*root, *draft), file.string(), problems);
   checkHd(*root, file.string(), problems);
   if (parameters != nullptr && !trial.error.empty())
     placeComplaints(trial.error, *draft, *root, file.string(), known, problems);

@@ -16,9 +16,9 @@
 
 #include "diagnostics/device/arm_plausibility.hpp"
 #include "diagnostics/device/arm_table.hpp"
+#include "diagnostics/device/corrected_keys.hpp"
 #include "diagnostics/device/device_trial.hpp"
 #include "diagnostics/device/limit_warnings.hpp"
-#include "diagnostics/device/meant_tree.hpp"
 #include "diagnostics/device/motor_warnings.hpp"
 #include "diagnostics/device/mount_warnings.hpp"
 #include "diagnostics/device/rest_joints.hpp"
@@ -256,7 +256,7 @@ document::Problems warnOfDevice(const std::filesystem::path& file, host::Catalog
   const auto device = known.empty() ? scene::loadDevice(file, catalog).device : scene::deviceDraft(file, catalog);
   auto root = device ? document::readFileOn(file, unread) : std::nullopt;
   if (!root) return warnings;
-  if (!known.empty()) root = withMeantWire(withMeantParameters(std::move(*root), *device), *device);
+  if (!known.empty()) root = withCorrectedWire(withCorrectedParameters(std::move(*root), *device), *device);
   countsWithoutScale(*root, file.string(), warnings);
   massesOfAnotherArm(*root, file.string(), warnings);
   massesAtTheEnds(*root, file.string(), warnings);

@@ -11,9 +11,9 @@
 
 #include "codec/wire_overlap.hpp"
 #include "diagnostics/device/arm_plausibility.hpp"
+#include "diagnostics/device/device_wire.hpp"
 #include "diagnostics/device/motor_force.hpp"
 #include "diagnostics/device/rest_joints.hpp"
-#include "diagnostics/device/wire_of.hpp"
 #include "diagnostics/reading/given_values.hpp"
 
 namespace hapticd::diagnostics {

@@ -9,10 +9,10 @@
 #include <set>
 #include <string>
 
+#include "diagnostics/device/device_wire.hpp"
 #include "diagnostics/device/motor_force.hpp"
 #include "diagnostics/device/rest_joints.hpp"
 #include "diagnostics/device/slow_arm.hpp"
-#include "diagnostics/device/wire_of.hpp"
 #include "diagnostics/reading/given_values.hpp"
 
 namespace hapticd::diagnostics {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "diagnostics/device/wire_of.hpp"
+#include "diagnostics/device/device_wire.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"

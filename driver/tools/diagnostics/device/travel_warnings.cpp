@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "diagnostics/device/wire_of.hpp"
+#include "diagnostics/device/device_wire.hpp"
 #include "diagnostics/reading/given_values.hpp"
 
 namespace hapticd::diagnostics {

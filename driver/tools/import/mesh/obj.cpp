@@ -4,7 +4,7 @@
 
 #include "kernels/part/names.hpp"
 #include "mesh_import/mesh_file.hpp"
-#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/mesh_text.hpp"
 #include "mesh_import/obj_materials.hpp"
 #include "mesh_import/polygons.hpp"
 #include "mesh_import/wrong_lines.hpp"

@@ -6,7 +6,7 @@
 #include "base/counted.hpp"
 #include "base/file_ending.hpp"
 #include "mesh_import/mesh_colours.hpp"
-#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/mesh_text.hpp"
 
 namespace hapticd::importing {
 namespace {

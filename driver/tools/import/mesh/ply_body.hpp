@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/mesh_text.hpp"
 
 namespace hapticd::importing::ply {
 

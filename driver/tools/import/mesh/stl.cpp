@@ -6,7 +6,7 @@
 
 #include "base/counted.hpp"
 #include "mesh_import/mesh_file.hpp"
-#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/mesh_text.hpp"
 #include "mesh_import/polygons.hpp"
 #include "mesh_import/wrong_lines.hpp"
 

@@ -7,6 +7,6 @@
 namespace hapticd::diagnostics {
 
 /// [main] Warns of a `hand` at the top of a scene beside one in `device` or `devices`, and says which one holds.
-void warnOfTwoHands(const document::Node& root, const std::string& file, document::Problems& warnings);
+void warnOfHandGivenTwice(const document::Node& root, const std::string& file, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

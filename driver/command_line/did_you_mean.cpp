@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "command_line/meant.hpp"
+#include "command_line/did_you_mean.hpp"
 
 #include "command_line/command_line.hpp"
 
@@ -17,7 +17,7 @@ void suggestBy(const Suggest& function) {
   suggest() = function;
 }
 
-std::string meant(const std::string& word, const std::vector<std::string>& known) {
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
   return suggest() ? suggest()(word, known) : "";
 }
 

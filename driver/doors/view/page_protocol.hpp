@@ -13,6 +13,6 @@
 namespace hapticd::view {
 
 /// [main] Both arguments must outlive the session.
-std::unique_ptr<PeerSession> startNativeSession(Peer& peer, Stage& stage);
+std::unique_ptr<PeerSession> startPageSession(Peer& peer, Stage& stage);
 
 }  // namespace hapticd::view

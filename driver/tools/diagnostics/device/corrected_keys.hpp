@@ -8,9 +8,9 @@
 namespace hapticd::diagnostics {
 
 /// [main] Gives `parameters` and the parameters themselves the keys as which the draft was read.
-document::Node withMeantParameters(document::Node root, const scene::Device& draft);
+document::Node withCorrectedParameters(document::Node root, const scene::Device& draft);
 
-/// [main] Moves the blocks of the wire format, too. @param root as withMeantParameters() returns it
-document::Node withMeantWire(document::Node root, const scene::Device& draft);
+/// [main] Moves the blocks of the wire format, too. @param root as withCorrectedParameters() returns it
+document::Node withCorrectedWire(document::Node root, const scene::Device& draft);
 
 }  // namespace hapticd::diagnostics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native.hpp"
+#include "page_protocol.hpp"
 
 #include <algorithm>
 #include <array>
@@ -299,7 +299,7 @@ void NativeSession::pass(const Json& id, Json request) {
 
 }  // namespace
 
-std::unique_ptr<PeerSession> startNativeSession(Peer& peer, Stage& stage) {
+std::unique_ptr<PeerSession> startPageSession(Peer& peer, Stage& stage) {
   return std::make_unique<NativeSession>(peer, stage);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnostics/device/meant_tree.hpp"
+#include "diagnostics/device/corrected_keys.hpp"
 
 #include <algorithm>
 #include <ranges>
@@ -78,7 +78,7 @@ void move(Node& root, const std::string& from, const std::string& to) {
 
 }  // namespace
 
-Node withMeantParameters(Node root, const scene::Device& draft) {
+Node withCorrectedParameters(Node root, const scene::Device& draft) {
   if (root.find("parameters") == nullptr)
     for (Entry& entry : root.entries)
       if (!nearestWord(entry.key.scalar, {"parameters"}).empty()) {
@@ -90,7 +90,7 @@ Node withMeantParameters(Node root, const scene::Device& draft) {
   return root;
 }
 
-Node withMeantWire(Node root, const scene::Device& draft) {
+Node withCorrectedWire(Node root, const scene::Device& draft) {
   const scene::Value* wire = givenIn(draft.parameters, "wire");
   if (wire == nullptr) return root;
   std::vector<codec::ReadInstead> moves;

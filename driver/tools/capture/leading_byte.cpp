@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/byte_in_front.hpp"
+#include "capture/leading_byte.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -88,7 +88,7 @@ std::string idWords(int id, size_t given, size_t size) {
 
 }  // namespace
 
-std::string byteInFront(const codec::Wire& wire, const Capture& capture) {
+std::string leadingByte(const codec::Wire& wire, const Capture& capture) {
   if (wire.framing.used || wire.input.id >= 0) return "";
   const size_t given = wire.input.size, size = sizeOfAll(capture);
   if (size < 2 || size < given) return "";

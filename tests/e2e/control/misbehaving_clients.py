@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A daemon among pipes, idle clients and others of its name: it answers, is stopped, and loses no file.
 
-Usage: rude_company.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
+Usage: misbehaving_clients.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 """
 import atexit
 import os

@@ -7,6 +7,6 @@
 namespace hapticd::command_line {
 
 /// Returns a text such as " (did you mean \"run\"?)", as the function of suggestBy() gives it, or "".
-std::string meant(const std::string& word, const std::vector<std::string>& known);
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace hapticd::command_line

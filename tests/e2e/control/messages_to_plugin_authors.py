@@ -2,7 +2,7 @@
 """What a person who writes a plugin is told: of words for choices, of values that are none, of a library that was built
 anew under a running daemon, of a model whose steps ask for memory, and of the line that a plugin's words are about.
 
-Usage: words_and_code.py HAPTICD WORDY_SHAPE.so SOURCE     prints one line per check; exit 1 when one fails.
+Usage: messages_to_plugin_authors.py HAPTICD WORDY_SHAPE.so SOURCE     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnostics/hand/two_hands.hpp"
+#include "diagnostics/hand/hand_given_twice.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ void judge(const document::Node& device, const std::string& key, const document:
 
 }  // namespace
 
-void warnOfTwoHands(const document::Node& root, const std::string& file, document::Problems& warnings) {
+void warnOfHandGivenTwice(const document::Node& root, const std::string& file, document::Problems& warnings) {
   const document::Node* top = root.isMap() ? root.find("hand") : nullptr;
   if (top == nullptr || !top->isMap()) return;
   if (const document::Node* device = root.find("device")) judge(*device, "device", *top, file, warnings);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* six.c - an arm of six joints with motors: torques of its joints, and what its device file says of it. */
+/* six_joints.c - an arm of six joints with motors: torques of its joints, and what its device file says of it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -16,9 +16,9 @@ namespace hapticd::diagnostics {
 /// @param left_out true for each model that has a problem, except for those that leaveOutCurves() keeps
 /// @param placed true for each model whose position could be read
 /// @param known as for warnOfHands()
-document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes& boxes,
-                                     const std::vector<bool>& left_out, const std::vector<bool>& placed,
-                                     host::Catalog& catalog, bool known = true);
+document::Problems warnOfHandsBesideProblems(const scene::Scene& scene, const ModelBoxes& boxes,
+                                             const std::vector<bool>& left_out, const std::vector<bool>& placed,
+                                             host::Catalog& catalog, bool known = true);
 
 /// [main] Removes from a model the wrong parameters that change only how it feels, such as the detent of a button. The
 /// surfaces are where they are without them, so a hand can be judged.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """An engineer errs once in the device file, or captured in the wrong moment: decode names the cause, and encode makes of its table the same bytes again.
 
-Usage: told_by_decode.py HAPTICD       exit 1 when one is off
+Usage: decode_findings.py HAPTICD       exit 1 when one is off
 """
 import math
 import os

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnostics/hand/hands_of_rest.hpp"
+#include "diagnostics/hand/hands_beside_problems.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -71,9 +71,9 @@ bool isOfSurfaces(const document::Problem& warning) {
   return has(".yaml:") && (has("].points") || has("there is a gap") || has("the outward normals of the two"));
 }
 
-document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes& boxes,
-                                     const std::vector<bool>& left_out, const std::vector<bool>& placed,
-                                     host::Catalog& catalog, bool known) {
+document::Problems warnOfHandsBesideProblems(const scene::Scene& scene, const ModelBoxes& boxes,
+                                             const std::vector<bool>& left_out, const std::vector<bool>& placed,
+                                             host::Catalog& catalog, bool known) {
   scene::Scene rest = scene;
   rest.models.clear();
   ModelBoxes boxes_of_rest;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* told.c - what a program hears of a force that is not felt as it was asked for.
- * Usage: told limit        a force beyond the limit is one error, while it is clamped
- *        told hold         it prints "ready" and waits for the error of a hold */
+/* unfelt_force.c - what a program hears of a force that is not felt as it was asked for.
+ * Usage: unfelt_force limit        a force beyond the limit is one error, while it is clamped
+ *        unfelt_force hold         it prints "ready" and waits for the error of a hold */
 #include <string.h>
 #include <unistd.h>
 

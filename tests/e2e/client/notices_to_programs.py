@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A program is told that nobody feels its force, and that its daemon is gone; the daemon's log tells what programs did.
 
-Usage: tell_of_trouble.py HAPTICD SOURCE OUTLIVES     prints one line per case; exit 1 when one is off.
+Usage: notices_to_programs.py HAPTICD SOURCE OUTLIVES     prints one line per case; exit 1 when one is off.
 """
 import contextlib
 import os

@@ -11,6 +11,6 @@ namespace hapticd::capture {
 
 /// [main] Returns one line, or "" if there is no such byte. The line says what to remove from the capture or which id
 /// to give, and which size the reports have without it.
-std::string byteInFront(const codec::Wire& wire, const Capture& capture);
+std::string leadingByte(const codec::Wire& wire, const Capture& capture);
 
 }  // namespace hapticd::capture
