@@ -27,6 +27,27 @@ void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
   bias.noalias() += hand_mass_ * J.transpose() * swing;
 }
 
+DeltaMechanism::DeltaMechanism(const kinematics::Delta& arm, const Vector& rotor, double hand_mass,
+                               const Eigen::Vector3d& gravity)
+    : arm_(arm), gravity_(gravity) {
+  const kinematics::DeltaGeometry& g = arm.geometry();
+  inertia_ = rotor.array() + (g.arm_mass / 3 + 0.5 * g.rod_mass) * g.a * g.a;
+  mass_ = g.platform_mass + 1.5 * g.rod_mass + hand_mass;
+}
+
+void DeltaMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
+  kinematics::DeltaMotion motion;
+  kinematics::JointVector weight;
+  meets_ = arm_.motion(q, qd, motion) && arm_.gravity(q, gravity_, weight);
+  if (!meets_) return;
+  last_ = q;
+  tip = motion.tip;
+  J = motion.J;
+  M = mass_ * J.transpose() * J;
+  M.diagonal() += inertia_;
+  bias = mass_ * J.transpose() * motion.swing + weight;  // without the hand's mass, because the hand carries its weight
+}
+
 namespace {
 
 /// Returns the chain with the hand's mass as a point mass at its tip.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The mechanisms of simulated arms: the PHANToM's parallelogram, and serial chains.
+/// The mechanisms of simulated arms: the PHANToM's parallelogram, the delta, and serial chains.
 #pragma once
 #include "kinematics/chain_dynamics.hpp"
+#include "kinematics/delta.hpp"
 #include "kinematics/phantom_dynamics.hpp"
 
 namespace hapticd::simulated {
@@ -38,6 +39,40 @@ class PhantomMechanism {
   kinematics::PhantomDynamics dynamics_;
   double hand_mass_;
   Eigen::Vector3d gravity_;
+};
+
+/// A delta with the mass of a hand at its tip. As in its gravity(), half of each rod pair's mass is at the end of its
+/// upper arm, and the other half at the platform; an upper arm is a thin rod.
+class DeltaMechanism {
+ public:
+  using Vector = Eigen::Vector3d;
+  using Matrix = Eigen::Matrix3d;
+
+  /// @param rotor inertia that each motor adds to its joint [kg m^2]
+  DeltaMechanism(const kinematics::Delta& arm, const Vector& rotor, double hand_mass, const Eigen::Vector3d& gravity);
+
+  /// Where the arm cannot be, its members stay those of the last place where it could.
+  void evaluate(const Vector& q, const Vector& qd) noexcept;
+
+  template <class Add>
+  void stops(const Vector& q, const Add& add) const noexcept {
+    for (int i = 0; i < 3; ++i) {
+      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(i), q[i] - arm_.limits().max[i]);
+      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(i), q[i] - arm_.limits().min[i]);
+      if (!meets_) add(Vector::Unit(i), q[i] - last_[i]);  // the rods hold the upper arms back
+    }
+  }
+
+  Matrix M = Matrix::Zero(), J = Matrix::Zero();
+  Vector bias = Vector::Zero(), tip = Vector::Zero();
+
+ private:
+  kinematics::Delta arm_;
+  Vector inertia_;  ///< [kg m^2] of each upper arm with its motor and half of its rods
+  double mass_;     ///< [kg] at the tip
+  Eigen::Vector3d gravity_;
+  bool meets_ = true;             ///< the three arms meet in the platform
+  Vector last_ = Vector::Zero();  ///< [rad] the last joint positions at which they did
 };
 
 /// A serial chain. The hand's mass is part of its last link.

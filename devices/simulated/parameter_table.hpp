@@ -6,7 +6,7 @@
 
 namespace hapticd::simulated {
 
-inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom"};
+inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom", "delta"};
 inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
@@ -18,18 +18,22 @@ struct ParameterTable {
   static constexpr auto arm() {
     return std::array{
         F::choice("arm.kind", &T::kind, kKinds, 0,
-                  "The mechanism: a PHANToM Premium 1.5, the serial chain of arm.dh, or an arm built like the PHANToM "
-                  "with other lengths (arm.lengths)."),
-        F::vector3("arm.origin", &T::origin, "m", -1, 1, "[0, 0, 0]",
-                   "premium15, phantom: position of the tip in the neutral pose, in the device frame. chain: an offset "
-                   "that is added to arm.base_position."),
+                  "The mechanism: a PHANToM Premium 1.5, the serial chain of arm.dh, an arm built like the PHANToM "
+                  "with other lengths (arm.lengths), or a delta such as the Novint Falcon."),
+        F::vector3(
+            "arm.origin", &T::origin, "m", -1, 1, "[0, 0, 0]",
+            "premium15, phantom: position of the tip in the neutral pose, in the device frame. delta: position of "
+            "the middle of its base. chain: an offset that is added to arm.base_position."),
         F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
                  "chain: one row a, alpha, d, theta for each joint (standard Denavit-Hartenberg)."),
-        F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
-                 "chain, phantom: one row [least, greatest angle] for each joint. Default: half a turn to either side "
-                 "for a chain, the stops of the Premium 1.5 for a phantom."),
-        F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]",
-                 "chain: mass of each link. phantom: ma mc mbe mdf; default: those of the Premium 1.5."),
+        F::array(
+            "arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
+            "chain, phantom, delta: one row [least, greatest angle] for each joint. Default: half a turn to either "
+            "side for a chain, the stops of the Premium 1.5 for a phantom, those of the Falcon for a delta."),
+        F::array(
+            "arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]",
+            "chain: mass of each link. phantom: ma mc mbe mdf; default: those of the Premium 1.5. delta: upper arm, "
+            "rod pair, platform; default: guessed ones of a Falcon."),
         F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
                  "chain: centre of mass of each link, in the frame after its joint."),
         F::array("arm.inertias", &T::inertias, "kg m^2", 3, 0, 48, 0, 1000, "[]",
@@ -38,11 +42,16 @@ struct ParameterTable {
         F::vector3("arm.base_position", &T::base_position, "m", -10, 10, "[0, 0, 0]",
                    "chain: position of its first frame in the device frame."),
         F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
-                 "chain: orientation of its first frame in the device frame, a unit quaternion w, x, y, z."),
+                 "Orientation in the device frame of the first frame of a chain, or of the base of a delta: a unit "
+                 "quaternion w, x, y, z."),
         F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
                    "chain: position of the tip in the frame of the last link."),
-        F::array("arm.lengths", &T::lengths, "m", 1, 0, 5, -10, 10, "[]",
-                 "phantom: l1 l2 l3 l5 l6; default: those of the Premium 1.5."),
+        F::array(
+            "arm.lengths", &T::lengths, "m", 1, 0, 8, -10, 10, "[]",
+            "phantom: l1 l2 l3 l5 l6; default: those of the Premium 1.5. delta: a b c d e f r s; default: those of "
+            "the Falcon."),
+        F::array("arm.angles", &T::angles, "rad", 1, 0, 3, -10, 10, "[]",
+                 "delta: angles about its axis at which the three arms are mounted; default: those of the Falcon."),
         F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
                  "Largest torque of each joint, behind its gear, as in the device file of a real arm. It replaces "
                  "joint.max_torque.")};

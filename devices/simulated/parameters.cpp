@@ -94,6 +94,16 @@ kinematics::PhantomGeometry phantomOf(const Parameters& p) {
   return kinematics::phantomGeometry(p.lengths, p.masses, vector(p.origin));
 }
 
+kinematics::DeltaGeometry deltaOf(const Parameters& p) {
+  kinematics::DeltaGeometry geometry;
+  kinematics::ErrorCollector wrong;
+  wrong.attempt([&] { geometry = kinematics::deltaGeometry(p.lengths, p.masses, p.angles); });
+  wrong.attempt([&] { geometry.base.orientation = baseOrientation(p.base_orientation); });
+  wrong.check();
+  geometry.base.position = vector(p.origin);
+  return geometry;
+}
+
 JointSettings jointsOf(const Parameters& p, int count) {
   const bool premium = p.arm() == Kind::kPremium15;
   kinematics::ErrorCollector wrong;
@@ -147,10 +157,10 @@ HandSettings handOf(const Parameters& p) {
 
 namespace {
 
-/// Returns a PHANToM with the lengths and joint limits of the device file.
-kinematics::Phantom makePhantom(const Parameters& p) {
-  kinematics::Phantom arm(phantomOf(p));
-  if (p.arm() == Kind::kPremium15 || p.limits.empty()) return arm;
+/// Returns an arm with the joint limits of the device file.
+template <class Arm>
+Arm limited(Arm arm, const Parameters& p) {
+  if (p.limits.empty()) return arm;
   const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
   kinematics::JointLimits limits{JointVector(rows), JointVector(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -159,6 +169,14 @@ kinematics::Phantom makePhantom(const Parameters& p) {
   }
   arm.narrow(limits);
   return arm;
+}
+
+kinematics::Phantom makePhantom(const Parameters& p) {
+  return limited(kinematics::Phantom(phantomOf(p)), p);
+}
+
+kinematics::Delta makeDelta(const Parameters& p) {
+  return limited(kinematics::Delta(deltaOf(p)), p);
 }
 
 kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rotor) {
@@ -182,6 +200,8 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 static void refuseIdle(const Parameters& p, kinematics::ErrorCollector& wrong) {
   if (p.arm() == Kind::kChain && !p.lengths.empty())
     wrong.add("arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths");
+  if (p.arm() == Kind::kDelta && !p.inertias.empty())
+    wrong.add("arm.inertias: a delta has those of its masses, and joint.rotor; remove arm.inertias");
   if (p.arm() != Kind::kPremium15) return;
   for (const auto& [list, name] : {std::pair{&p.lengths, "lengths"}, std::pair{&p.masses, "masses"},
                                    std::pair{&p.inertias, "inertias"}, std::pair{&p.limits, "limits"}})
@@ -191,17 +211,19 @@ static void refuseIdle(const Parameters& p, kinematics::ErrorCollector& wrong) {
 }
 
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
-  constexpr int kOfPhantom = 3;
+  constexpr int kOfOthers = 3;  // phantom and delta
   kinematics::ErrorCollector wrong;
   std::unique_ptr<kinematics::Arm> arm;
   refuseIdle(p, wrong);
   wrong.attempt([&] {
     if (p.arm() == Kind::kChain)
       arm = std::make_unique<kinematics::Chain>(chainOf(p));
+    else if (p.arm() == Kind::kDelta)
+      arm = std::make_unique<kinematics::Delta>(makeDelta(p));
     else
       arm = std::make_unique<kinematics::Phantom>(makePhantom(p));
   });
-  const int joints = p.arm() == Kind::kChain ? static_cast<int>(p.dh.size() / 4) : kOfPhantom;
+  const int joints = p.arm() == Kind::kChain ? static_cast<int>(p.dh.size() / 4) : kOfOthers;
   if (joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });
   wrong.check();
   return arm;
@@ -211,6 +233,8 @@ std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joint
   const double mass = static_cast<Script>(p.script) == Script::kNone ? 0 : p.mass;
   if (p.arm() == Kind::kChain)
     return std::make_unique<PlantOf<ChainMechanism>>(joints, ChainMechanism(chainOf(p), joints.rotor, mass, gravity));
+  if (p.arm() == Kind::kDelta)
+    return std::make_unique<PlantOf<DeltaMechanism>>(joints, DeltaMechanism(makeDelta(p), joints.rotor, mass, gravity));
   const kinematics::PhantomInertia inertia = inertiaOf(p, joints.rotor);
   return std::make_unique<PlantOf<PhantomMechanism>>(joints, PhantomMechanism(makePhantom(p), inertia, mass, gravity));
 }

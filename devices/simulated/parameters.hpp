@@ -8,20 +8,21 @@
 #include <vector>
 
 #include "kinematics/chain.hpp"
+#include "kinematics/delta.hpp"
 #include "kinematics/phantom.hpp"
 #include "simulated/hand.hpp"
 #include "simulated/plant.hpp"
 
 namespace hapticd::simulated {
 
-enum class Kind { kPremium15, kChain, kPhantom };
+enum class Kind { kPremium15, kChain, kPhantom, kDelta };
 
 struct Parameters {
   int seed = 1, kind = 0, delay = 0;
   double substep = 2e-4;
   // arm
   std::array<double, 3> origin{}, base_position{}, tool_position{};
-  std::vector<double> base_orientation, dh, limits, masses, centers, inertias, lengths, arm_torque;
+  std::vector<double> base_orientation, dh, limits, masses, centers, inertias, lengths, angles, arm_torque;
   // joint: lists of one number for all joints, or of one number per joint
   std::vector<double> gear, counts, damping, friction, max_torque, rotor, stiffness, rate_damping;
   double motor_lag = 0, friction_speed = 0, torque_noise = 0;
@@ -43,6 +44,7 @@ struct Parameters {
 /// user.
 kinematics::ChainGeometry chainOf(const Parameters& p);
 kinematics::PhantomGeometry phantomOf(const Parameters& p);
+kinematics::DeltaGeometry deltaOf(const Parameters& p);
 JointSettings jointsOf(const Parameters& p, int count);
 HandSettings handOf(const Parameters& p);
 

@@ -22,8 +22,8 @@ constexpr int kMaxSubsteps = 5000;
 class SimulatedArm : public Device, public Parameters {
  public:
   static constexpr DeviceInfo kInfo{"org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
-                                    "An arm simulated at torque level (PHANToM Premium 1.5, an arm built like it, or "
-                                    "any serial chain), and the hand that holds it."};
+                                    "An arm simulated at torque level (PHANToM Premium 1.5, an arm built like it, a "
+                                    "delta, or any serial chain), and the hand that holds it."};
   static constexpr auto fields() {
     using Table = ParameterTable<SimulatedArm>;
     return join(Table::arm(), Table::device(), Table::joint(), Table::hand());
@@ -188,6 +188,7 @@ class SimulatedArm : public Device, public Parameters {
     std::snprintf(info.product, sizeof info.product, "simulated %s",
                   arm() == Kind::kPremium15 ? "PHANToM Premium 1.5"
                   : arm() == Kind::kPhantom ? "arm like the PHANToM"
+                  : arm() == Kind::kDelta   ? "delta"
                                             : "serial arm");
     std::snprintf(info.serial, sizeof info.serial, "seed %d", seed);
   }

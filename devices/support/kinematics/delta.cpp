@@ -5,6 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kinematics/assign_list.hpp"
+#include "kinematics/error_collector.hpp"
+
 namespace hapticd::kinematics {
 namespace {
 
@@ -14,6 +17,17 @@ constexpr double kAccepted = 1e-13;    ///< [m^2] largest residual of a solution
 constexpr double kLargestStep = 0.03;  ///< [m] longest step; keeps Newton's method on the platform's side of the base
 
 }  // namespace
+
+DeltaGeometry deltaGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
+                            const std::vector<double>& angles) {
+  DeltaGeometry g;
+  ErrorCollector wrong;
+  wrong.attempt([&] { assignList(lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s); });
+  wrong.attempt([&] { assignList(masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass); });
+  wrong.attempt([&] { assignList(angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]); });
+  wrong.check();
+  return g;
+}
 
 Delta::Delta(const DeltaGeometry& geometry)
     : geometry_(geometry), R_device_arm_(geometry.base.orientation.normalized().toRotationMatrix()) {
@@ -54,23 +68,30 @@ Delta::Closure Delta::closure(size_t arm, const Eigen::Vector3d& p, double theta
 }
 
 bool Delta::solve(const JointVector& q, Eigen::Vector3d& p) const noexcept {
-  Eigen::Vector3d residual;
+  Eigen::Vector3d residual, move = Eigen::Vector3d::Zero();
+  bool valid = true;
   for (int step = 0; step < kMaxNewton; ++step) {
     Eigen::Matrix3d A;
-    for (int i = 0; i < 3; ++i) {
+    valid = true;
+    for (int i = 0; i < 3 && valid; ++i) {
       const Closure arm = closure(static_cast<size_t>(i), p, q[i]);
-      if (!arm.valid) return false;
+      valid = arm.valid;
       residual[i] = arm.value;
       A.row(i) = arm.d_p;
     }
+    if (!valid) {  // the step led to a place where a rod is too short: half of it
+      move *= 0.5;
+      p -= move;
+      continue;
+    }
     if (residual.cwiseAbs().maxCoeff() <= kClosed) return true;
-    Eigen::Vector3d move = -A.inverse() * residual;
+    move = -A.inverse() * residual;
     if (!move.allFinite()) return false;
     if (move.norm() > kLargestStep) move *= kLargestStep / move.norm();
     p += move;
     if (move.norm() < 1e-17) break;
   }
-  return residual.cwiseAbs().maxCoeff() <= kAccepted;
+  return valid && residual.cwiseAbs().maxCoeff() <= kAccepted;
 }
 
 bool Delta::forward(const JointVector& q, Pose& tip) const noexcept {
@@ -103,10 +124,36 @@ bool Delta::links(const JointVector& q, std::span<Pose> ends) const noexcept {
   return forward(q, ends[6]);
 }
 
-bool Delta::localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J) const noexcept {
+double Delta::curvature(size_t arm, const Eigen::Vector3d& p, double theta, const Eigen::Vector3d& dp,
+                        double d_theta) const noexcept {
+  const DeltaGeometry& g = geometry_;
+  const double s = std::sin(theta), c = std::cos(theta);
+  const double u = p.x() * cos_[arm] + p.y() * sin_[arm] - g.r + g.c;
+  const double v = -p.x() * sin_[arm] + p.y() * cos_[arm] - g.s - g.f;
+  const double side = std::sqrt(g.b * g.b - v * v), reach = g.d + g.e + side;
+  const double d_u = dp.x() * cos_[arm] + dp.y() * sin_[arm], d_v = -dp.x() * sin_[arm] + dp.y() * cos_[arm];
+  const double along = u - g.a * c, d_along = d_u + g.a * s * d_theta, dd_along = g.a * c * d_theta * d_theta;
+  const double up = p.z() - g.a * s, d_up = dp.z() - g.a * c * d_theta, dd_up = g.a * s * d_theta * d_theta;
+  const double d_side = -v * d_v / side, dd_side = -(d_v * d_v + d_side * d_side) / side;
+  return 2 * (d_along * d_along + along * dd_along + d_up * d_up + up * dd_up - d_side * d_side - reach * dd_side);
+}
+
+bool Delta::motion(const JointVector& q, const JointVector& qd, DeltaMotion& motion) const noexcept {
+  Eigen::Vector3d p, curved;
+  Eigen::Matrix3d J, A;
+  if (!localJacobian(q, p, J, A)) return false;
+  const Eigen::Vector3d dp = J * qd;
+  for (int i = 0; i < 3; ++i) curved[i] = curvature(static_cast<size_t>(i), p, q[i], dp, qd[i]);
+  motion.tip = geometry_.base.position + R_device_arm_ * p;
+  motion.J = R_device_arm_ * J;
+  motion.swing = R_device_arm_ * (-A.inverse() * curved);
+  return motion.swing.allFinite();
+}
+
+bool Delta::localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J,
+                          Eigen::Matrix3d& A) const noexcept {
   p = middle_;
   if (!solve(q, p)) return false;
-  Eigen::Matrix3d A;
   Eigen::Vector3d b;
   for (int i = 0; i < 3; ++i) {
     const Closure arm = closure(static_cast<size_t>(i), p, q[i]);
@@ -119,8 +166,8 @@ bool Delta::localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matri
 
 bool Delta::jacobian(const JointVector& q, Jacobian& J) const noexcept {
   Eigen::Vector3d p;
-  Eigen::Matrix3d local;
-  if (!localJacobian(q, p, local)) return false;
+  Eigen::Matrix3d local, A;
+  if (!localJacobian(q, p, local, A)) return false;
   J.setZero(6, 3);
   J.topRows<3>() = R_device_arm_ * local;
   return true;
@@ -128,8 +175,8 @@ bool Delta::jacobian(const JointVector& q, Jacobian& J) const noexcept {
 
 bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {
   Eigen::Vector3d p;
-  Eigen::Matrix3d J;
-  if (!localJacobian(q, p, J)) return false;
+  Eigen::Matrix3d J, A;
+  if (!localJacobian(q, p, J, A)) return false;
   const DeltaGeometry& geometry = geometry_;
   const Eigen::Vector3d g_arm = R_device_arm_.transpose() * gravity;
   tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;

@@ -3,6 +3,7 @@
 /// translates. Geometry after Stamper (1997) and Tsai.
 #pragma once
 #include <array>
+#include <vector>
 
 #include "kinematics/arm.hpp"
 
@@ -23,6 +24,20 @@ struct DeltaGeometry {
   Pose base;  ///< frame of the base in the device frame; its z points to the platform
 };
 
+/// [main] Returns the geometry with the numbers of a device file. An empty list keeps the default. Throws
+/// std::invalid_argument with a message for the user.
+/// @param lengths a b c d e f r s [m]  @param masses arm, rod pair, platform [kg]  @param angles of the three arms
+/// [rad]
+DeltaGeometry deltaGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
+                            const std::vector<double>& angles);
+
+/// How the tip follows the joints.
+struct DeltaMotion {
+  Eigen::Vector3d tip;    ///< [m]
+  Eigen::Matrix3d J;      ///< the tip's velocity for given joint velocities
+  Eigen::Vector3d swing;  ///< [m/s^2] (dJ/dt) qd, the tip's acceleration when no joint accelerates
+};
+
 class Delta : public Arm {
  public:
   /// Throws std::invalid_argument with a message for the user.
@@ -36,6 +51,9 @@ class Delta : public Arm {
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override { return neutral_; }
+  const DeltaGeometry& geometry() const noexcept { return geometry_; }
+  /// [any] Computes the motion of the tip, device frame. Returns false if forward() does.
+  bool motion(const JointVector& q, const JointVector& qd, DeltaMotion& motion) const noexcept;
   std::span<const int32_t> parents() const noexcept override;  ///< upper arms, rods to the platform, the tip
   Eigen::Vector3d base() const noexcept override { return geometry_.base.position; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
@@ -47,9 +65,12 @@ class Delta : public Arm {
     Eigen::Vector3d d_p;
     bool valid;
   };
+  /// Returns d^2 g / dt^2 of one arm while neither the platform nor the joint accelerates.
+  double curvature(size_t arm, const Eigen::Vector3d& p, double theta, const Eigen::Vector3d& dp,
+                   double d_theta) const noexcept;
   Closure closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept;
   bool solve(const JointVector& q, Eigen::Vector3d& p) const noexcept;
-  bool localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J) const noexcept;
+  bool localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J, Eigen::Matrix3d& A) const noexcept;
 
   DeltaGeometry geometry_;
   Eigen::Matrix3d R_device_arm_;

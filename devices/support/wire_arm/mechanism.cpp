@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinematics/assign_list.hpp"
 #include "kinematics/carried_bodies.hpp"
 #include "kinematics/chain.hpp"
 #include "kinematics/delta.hpp"
@@ -16,7 +15,6 @@ namespace hapticd::wire_arm {
 namespace {
 
 using Eigen::Vector3d;
-using kinematics::assignList;
 
 kinematics::Pose baseOf(const MechanismParameters& p) {
   kinematics::Pose base;
@@ -40,9 +38,7 @@ std::unique_ptr<kinematics::Arm> phantom(const MechanismParameters& p) {
 std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
   kinematics::DeltaGeometry g;
   kinematics::ErrorCollector wrong;
-  wrong.attempt([&] { assignList(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s); });
-  wrong.attempt([&] { assignList(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass); });
-  wrong.attempt([&] { assignList(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]); });
+  wrong.attempt([&] { g = kinematics::deltaGeometry(p.lengths, p.masses, p.angles); });
   wrong.attempt([&] { g.base = baseOf(p); });
   wrong.check();
   return std::make_unique<kinematics::Delta>(g);

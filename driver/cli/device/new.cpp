@@ -62,20 +62,15 @@ void askAll(const Command& command, DeviceDraft& draft) {
 
 /// Prints what to do with the new file.
 void printNextSteps(const DeviceDraft& draft, const std::string& name) {
-  const std::string twin = draft.kind == "delta"
-                               ? ""  // the simulated arm does not have this mechanism
-                               : "  hapticd device twin " + name +
-                                     "                 # the same arm simulated, to try a scene without the "
-                                     "real arm\n";
   std::printf(
       "%s\n\nthen, step by step (%s, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
       "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
       "  hapticd device record %s               # what the arm sends, motors off\n"
-      "%s"
+      "  hapticd device twin %s                 # the same arm simulated, to try a scene without the real arm\n"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), guide("devices.md").c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(),
+      name.c_str(), guide("devices.md").c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(),
       name.c_str());
   if (draft.isPlanar())
     std::printf(

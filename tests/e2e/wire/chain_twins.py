@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every chain that `device new` writes has a twin that can be run: flat ones, ones with more joints than directions, ones whose middle is stretched out.
+"""Every chain, and the delta, that `device new` writes has a twin that can be run: flat ones, ones with more joints than directions, ones whose middle is stretched out.
 
 Usage: chain_twins.py HAPTICD SOURCE_DIR       exit 1 when one is off
 """
@@ -80,7 +80,10 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("device", "twin", arm, "-o", twin)
     check("a twin whose hand is out of reach is not recommended", code == 1 and "then:" not in out and "which the arm cannot reach" in err and "fix: correct mount in" in err, (out, err))
     out = new("--kind", "delta")
-    check("nor one of a delta, which has none", "device twin" not in out and "device calibrate" in out, out)
+    code, twin_out, err = run("device", "twin", arm, "-o", twin)
+    ran = run("run", SPHERE, "--device", twin, "--for", "2", "--virtual-time", "--report", report)
+    touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
+    check("a delta has one, too", code == 0 and "device twin" in out and ran[0] == 0 and touched > 200, (twin_out, err, ran, touched))
     check("that the tip rests in front of the origin is said of a phantom alone",
           "here the resting tip is" not in open(arm).read() and (new("--kind", "phantom"), "here the resting tip is" in open(arm).read())[1])
 finish()

@@ -55,8 +55,9 @@ std::string flowWithout(Node map, const std::array<std::string_view, N>& keys) {
 /// Returns the block `arm`. Keys that the simulated arm lacks are left out, and `origin` of a chain becomes
 /// `base_position`.
 std::string armOfTwin(const Node& arm, bool chain) {
-  static constexpr std::array<std::string_view, 9> kSame{
-      "kind", "lengths", "masses", "limits", "max_torque", "dh", "centers", "base_orientation", "tool_position"};
+  static constexpr std::array<std::string_view, 10> kSame{
+      "kind",       "lengths", "angles",  "masses",           "limits",
+      "max_torque", "dh",      "centers", "base_orientation", "tool_position"};
   std::string text = "  arm:\n";
   for (const document::Entry& entry : arm.entries) {
     const std::string& key = entry.key.scalar;
@@ -137,13 +138,35 @@ TwinPose standOfFlat(const RestPose& rest, const std::string& pose) {
   return stand;
 }
 
-/// Returns where the twin stands: at the mount of its arm. A chain without a mount gets one that puts its tip where
-/// scenes expect a hand.
-TwinPose standOf(const Node& mount, const Node& arm, bool chain) {
+/// [m] Returns how high the tip of a delta is over its base with its arms in the middle of their usual range.
+double middleOfDelta(const Node& arm) {
+  constexpr double kMiddle = 0.55;  // rad
+  std::vector<double> lengths = numbersOf(arm.find("lengths"), 8);
+  if (lengths.empty()) lengths = {0.060, 0.1025, 0.01443, 0.01125, 0.01125, -0.025, 0.040, -0.02309};  // a Falcon's
+  const double a = lengths[0], b = lengths[1], along = lengths[2] - lengths[6] - a * std::cos(kMiddle);
+  const double aside = lengths[5] + lengths[7], reach = lengths[3] + lengths[4] + std::sqrt(b * b - aside * aside);
+  return std::sqrt(reach * reach - along * along) + a * std::sin(kMiddle);
+}
+
+/// For a delta without a mount: the middle of its reach is 5 cm in front of the shapes' middle, as for the Falcon.
+void standOfDelta(const Node& arm, TwinPose& stand) {
+  const double high = std::round(middleOfDelta(arm) * 1e3) * 1e-3;
+  if (!std::isfinite(high) || arm.find("origin") != nullptr || arm.find("base_orientation") != nullptr) return;
+  stand.center = Eigen::Vector3d(0, 0, high - 0.05);
+  stand.mount = fmt::format(
+      "mount: {{position: [0, 0, {:g}]}}    # the arm's file has none: this puts the middle of its reach 5 cm in front "
+      "of the shapes' middle\n",
+      -stand.center.z());
+}
+
+/// Returns where the twin stands: at the mount of its arm. A chain or a delta without a mount gets one that puts its
+/// tip where scenes expect a hand.
+TwinPose standOf(const Node& mount, const Node& arm, const std::string& kind) {
   TwinPose stand;
   stand.center = originOf(mount);
   if (mount.isMap()) stand.mount = "mount: " + flowText(mount) + "\n";
-  if (mount.isMap() || !chain) return stand;
+  if (!mount.isMap() && kind == "delta") standOfDelta(arm, stand);
+  if (mount.isMap() || kind != "chain") return stand;
   const RestPose rest = restPoseOf(arm);
   const std::string pose = poseOf(rest, !below(arm, "limits").items.empty());
   if (rest.freedom < 3) return standOfFlat(rest, pose);
@@ -158,14 +181,17 @@ TwinPose standOf(const Node& mount, const Node& arm, bool chain) {
 }
 
 /// Returns the block `joint`. It has rotors if a chain has more joints than its tip has directions, because without
-/// masses a joint that can move while the tip stands still would have no inertia.
-std::string jointOf(const Node& parameters, const Node& arm, bool chain) {
+/// masses a joint that can move while the tip stands still would have no inertia. So has a delta, because nobody
+/// publishes the masses of one.
+std::string jointOf(const Node& parameters, const Node& arm, const std::string& kind) {
   const std::vector<double> counts = countsOf(parameters);
-  const bool spare = chain && below(arm, "dh").items.size() > static_cast<size_t>(restPoseOf(arm).freedom);
+  const bool spare = kind == "chain" && below(arm, "dh").items.size() > static_cast<size_t>(restPoseOf(arm).freedom);
   std::string text, comment = "without friction and rotors";
   if (!counts.empty()) text += fmt::format("counts: [{:.0f}]", fmt::join(counts, ", "));
-  if (spare) text += std::string(text.empty() ? "" : ", ") + "rotor: [0.0002], damping: [0.005]";
-  if (spare) comment = "kg m^2 and N m s/rad [assumption], as some joints move without the tip";
+  if (spare || kind == "delta") {
+    text += std::string(text.empty() ? "" : ", ") + "rotor: [0.0002], damping: [0.005]";
+    comment = std::string("kg m^2 and N m s/rad [assumption]") + (spare ? ", as some joints move without the tip" : "");
+  }
   if (text.empty()) return "";
   return "  joint: {" + text + "}    # " + (counts.empty() ? "" : "counts of one joint turn, as wire has them; ") +
          comment + "\n";
@@ -198,14 +224,14 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
   const Node &parameters = below(root, "parameters"), &arm = below(parameters, "arm");
   const std::string kind = below(arm, "kind").scalar;
   if (below(root, "module").scalar == "simulated") return Error{file + ": is simulated already"};
-  if (kind != "phantom" && kind != "chain")
+  if (kind != "phantom" && kind != "delta" && kind != "chain")
     return Error{file + ": parameters.arm.kind is \"" + kind +
-                 "\", expected phantom or chain: the simulated arm has no other mechanism"};
+                 "\", expected phantom, delta or chain: the simulated arm has no other mechanism"};
   if (document::toNumber(below(arm, "others").scalar).value_or(0) > 0)
     return Error{file + ": parameters.arm.others: joints that do not carry the tip have no twin"};
   const Node &mount = below(root, "mount"), &limits = below(root, "limits");
   const double rate = document::toNumber(below(below(parameters, "wire"), "rate").scalar).value_or(1000);
-  const TwinPose stand = standOf(mount, arm, kind == "chain");
+  const TwinPose stand = standOf(mount, arm, kind);
   std::string text = fmt::format(
       "# A simulated arm with the mechanism of {}, written by `hapticd device twin`; it needs no hardware.\n"
       "hapticd-device: 1\nmodule: simulated\nname: twin of {}\n",
@@ -216,8 +242,8 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
             (below(limits, "enable").isNull() ? "\n" : "    # without enable: it has no buttons\n");
   text += "parameters:\n  substep: 0.0002               # s, of the integration\n";
   if (const std::string borrowed = borrowedByTwin(root); !borrowed.empty()) text += "  # " + borrowed + "\n";
-  text += deviceOf(below(parameters, "device"), rate) + armOfTwin(arm, kind == "chain") +
-          jointOf(parameters, arm, kind == "chain");
+  text +=
+      deviceOf(below(parameters, "device"), rate) + armOfTwin(arm, kind == "chain") + jointOf(parameters, arm, kind);
   return text + handOf(stand);
 }
 

@@ -15,13 +15,12 @@ JointSettings frictionless(int count) {
   return joints;
 }
 
-/// Largest change of kinetic energy in half a second of free flight without gravity.
-double energyDrift(double h) {
-  const kinematics::Phantom arm;
-  PhantomMechanism mechanism(arm, {}, 0.2, Eigen::Vector3d::Zero());
-  PlantOf<PhantomMechanism> plant(frictionless(3), mechanism);
-  plant.reset(JointVector::Zero(3));
-  Drive push{false, Eigen::Vector3d(0.3, 0.2, -0.1), JointVector::Zero(3), JointVector::Zero(3)}, none = push;
+/// Largest change of kinetic energy in a tenth of a second of free flight without gravity.
+template <class Mechanism>
+double energyDrift(Mechanism mechanism, const JointVector& begin, const Eigen::Vector3d& torque, double h) {
+  PlantOf<Mechanism> plant(frictionless(3), mechanism);
+  plant.reset(begin);
+  Drive push{false, torque, JointVector::Zero(3), JointVector::Zero(3)}, none = push;
   none.torque.setZero();
   const HandCoupling away{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (int i = 0; i < 100; ++i) plant.step(1e-3, push, away);
@@ -39,9 +38,45 @@ double energyDrift(double h) {
 }
 
 TEST(Plant, KeepsItsEnergyInTheLimitOfSmallSteps) {
-  const double coarse = energyDrift(1e-4), fine = energyDrift(1e-5);
+  const PhantomMechanism mechanism(kinematics::Phantom(), {}, 0.2, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d torque(0.3, 0.2, -0.1);
+  const double coarse = energyDrift(mechanism, JointVector::Zero(3), torque, 1e-4),
+               fine = energyDrift(mechanism, JointVector::Zero(3), torque, 1e-5);
   EXPECT_LT(fine, 1e-3);
   EXPECT_NEAR(coarse / fine, 10, 2);  // first order
+}
+
+TEST(Plant, ADeltaKeepsItsEnergyInTheLimitOfSmallSteps) {
+  const kinematics::Delta arm;
+  const DeltaMechanism mechanism(arm, Eigen::Vector3d::Constant(2e-4), 0.6, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d torque(0.06, 0.04, -0.02);  // N m: it reaches no stop within the time
+  const double coarse = energyDrift(mechanism, arm.neutral(), torque, 1e-4),
+               fine = energyDrift(mechanism, arm.neutral(), torque, 1e-5);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_NEAR(coarse / fine, 10, 2);  // first order
+}
+
+/// A hand that pulls farther than the arm reaches leaves it at its end: finite, and back as soon as the hand is.
+TEST(Plant, ADeltaStaysInOnePiece) {
+  const kinematics::Delta arm;
+  JointSettings joints = frictionless(3);
+  joints.damping.setConstant(0.005);
+  PlantOf<DeltaMechanism> plant(
+      joints, DeltaMechanism(arm, Eigen::Vector3d::Constant(2e-4), 0.2, Eigen::Vector3d(0, -9.81, 0)));
+  plant.reset(arm.neutral());
+  const Eigen::Vector3d middle = plant.tip();
+  const Drive none{false, JointVector::Zero(3), JointVector::Zero(3), JointVector::Zero(3)};
+  for (const Eigen::Vector3d& pulled :
+       {Eigen::Vector3d(0, 0, 0.4), Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, -0.3, 0.2),
+        Eigen::Vector3d(0, 0, -0.4), Eigen::Vector3d(-0.2, 0.2, -0.1)}) {
+    HandCoupling pull{middle + pulled, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 500, 5};
+    for (int i = 0; i < 5000; ++i) plant.step(2e-4, none, pull);
+    ASSERT_TRUE(plant.position().allFinite()) << pulled.transpose();
+    EXPECT_LT((plant.tip() - middle).norm(), 0.2) << pulled.transpose();
+    pull.target = middle;
+    for (int i = 0; i < 10000; ++i) plant.step(2e-4, none, pull);
+    EXPECT_LT((plant.tip() - middle).norm(), 0.005) << pulled.transpose();
+  }
 }
 
 TEST(Plant, SwingsOnAHandSpringAtTheRightFrequency) {

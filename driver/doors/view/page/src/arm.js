@@ -5,7 +5,7 @@
 import {Matrix4, Quaternion, Vector3} from 'three';
 
 /** The words of the parameter arm.kind, by module. The index of a word is the value of the parameter. */
-const kKinds = {simulated: ['phantom', 'chain'], usb_hid: ['phantom', 'delta', 'chain'], usb_bulk: ['phantom', 'delta', 'chain'], vme: ['phantom', 'delta', 'chain']};
+const kKinds = {simulated: ['phantom', 'chain', 'phantom', 'delta'], usb_hid: ['phantom', 'delta', 'chain'], usb_bulk: ['phantom', 'delta', 'chain'], vme: ['phantom', 'delta', 'chain']};
 const kPhantomLengths = [0.215, 0.17, 0.0325]; // m: upper arm, forearm, short side (Cavusoglu et al. 2002)
 const kOpening = 55 * Math.PI / 180, kClosing = 65 * Math.PI / 180; // rad: limits of the angle between the PHANToM's links
 const kDelta = {lengths: [0.06, 0.1025, 0.01443, 0.01125, 0.01125, -0.025, 0.04, -0.02309], angles: [105, -15, -135].map((a) => a * Math.PI / 180)};
@@ -117,14 +117,26 @@ class Chain {
 
 class Delta {
   constructor(of) {
-    const [a, , c, , , f, r, s] = of.list('arm.lengths') ?? kDelta.lengths;
-    Object.assign(this, {a, c, f, r, s});
+    const [a, b, c, d, e, f, r, s] = of.list('arm.lengths') ?? kDelta.lengths;
+    Object.assign(this, {a, b, c, d, e, f, r, s});
     this.angles = of.list('arm.angles') ?? kDelta.angles;
     this.base = frameAt(of.list('arm.origin'), of.list('arm.base_orientation'));
     this.toArm = this.base.clone().invert();
   }
 
   tip() { return null; } // not computed: a delta has a closed form only for the inverse, and the row holds the tip
+
+  /** Returns a place where the tip may be, if all joints are within their limits; else null. @param chance gives numbers from 0 to 1 */
+  reach(chance, low, high) {
+    const far = this.a + this.b + this.d + this.e, p = new Vector3(chance() - 0.5, chance() - 0.5, chance() / 2).multiplyScalar(2 * far);
+    const meets = this.angles.every((phi, i) => {
+      const u = p.x * Math.cos(phi) + p.y * Math.sin(phi) - this.r + this.c, v = -p.x * Math.sin(phi) + p.y * Math.cos(phi) - this.s - this.f;
+      const long = this.d + this.e + Math.sqrt(this.b * this.b - v * v), away = Math.hypot(u, p.z);
+      const theta = Math.atan2(p.z, u) - Math.acos((away * away + this.a * this.a - long * long) / (2 * this.a * away)); // NaN out of reach
+      return theta >= low[i] && theta <= high[i];
+    });
+    return meets ? p.applyMatrix4(this.base) : null;
+  }
 
   links(q, row) {
     const p = row.clone().applyMatrix4(this.toArm), thick = 0.07 * this.a, tip = row.clone(), links = [];
@@ -165,16 +177,21 @@ export class ArmModel {
    * unknown. */
   workspace() {
     const {joint_count: count, position_min: low, position_max: high} = this.info;
-    if (!this.mechanism || this.mechanism instanceof Delta || !count) return null;
+    if (!this.mechanism || !count) return null;
     const min = new Vector3(Infinity, Infinity, Infinity), max = min.clone().negate();
     let seed = 1;
     const chance = () => (seed = seed * 48271 % 0x7fffffff) / 0x7fffffff;
+    const take = (tip) => { min.min(tip.applyMatrix4(this.mount)), max.max(tip); };
     for (let sample = 0; sample < kSamples; ++sample) {
+      if (this.mechanism.reach) {
+        const tip = this.mechanism.reach(chance, low, high);
+        if (tip) take(tip);
+        continue;
+      }
       // The tip is farthest out when joints are at their limits, so half of the joints are placed at a limit.
       const q = Array.from({length: count}, (_, i) => Number(low[i]) + (Number(high[i]) - Number(low[i])) * (chance() < 0.5 ? Math.round(chance()) : chance()));
       if (!q.every(Number.isFinite) || (this.mechanism.allowed && !this.mechanism.allowed(q))) continue;
-      const tip = this.mechanism.tip(q).applyMatrix4(this.mount);
-      min.min(tip), max.max(tip);
+      take(this.mechanism.tip(q));
     }
     return min.x < max.x ? {min, max} : null;
   }

@@ -5,6 +5,7 @@
 
 #include "example_chain.hpp"
 #include "kinematics/chain_dynamics.hpp"
+#include "kinematics/delta.hpp"
 #include "kinematics/phantom_dynamics.hpp"
 #include "numeric.hpp"
 
@@ -25,6 +26,30 @@ JointVector lagrange(const MassAt& mass, const JointVector& q, const JointVector
     c[k] -= 0.5 * qd.dot(slope * qd);
   }
   return c;
+}
+
+TEST(DeltaMotion, TheTipSwingsAsItsJacobianTurns) {
+  DeltaGeometry tilted;
+  tilted.base.orientation = Eigen::Quaterniond(0.9, 0.3, -0.2, 0.1);
+  const Delta arm(tilted);
+  RandomJoints random(arm);
+  int reached = 0;
+  for (int n = 0; n < 200; ++n) {
+    constexpr double kStep = 1e-5;  // s
+    const JointVector q = random.next();
+    JointVector qd(3);
+    for (int i = 0; i < 3; ++i) qd[i] = random.uniform(-2, 2);
+    DeltaMotion now, ahead, behind;
+    Pose tip;
+    if (!arm.motion(q, qd, now) || now.J.norm() > 1) continue;  // where the rods are stretched out J has no bound
+    if (!arm.motion(q + kStep * qd, qd, ahead) || !arm.motion(q - kStep * qd, qd, behind)) continue;
+    ++reached;
+    ASSERT_TRUE(arm.forward(q, tip));
+    EXPECT_LT((now.tip - tip.position).norm(), 1e-12);
+    const Eigen::Vector3d swing = (ahead.J - behind.J) * qd / (2 * kStep);
+    EXPECT_LT((now.swing - swing).norm(), 1e-6 * (1 + swing.norm()));
+  }
+  EXPECT_GT(reached, 20);
 }
 
 TEST(ChainDynamics, KineticEnergyIsThatOfTheLinks) {
