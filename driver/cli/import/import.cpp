@@ -157,6 +157,10 @@ int importModel(const ImportArguments& options) {
   if (from_cad) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {
+    if (endingOf(options.file) == ".ma" || isMeshFile(options.file))
+      return fail(kBadInput, options.file +
+                                 ": holds no material, expected a model file (.yaml) of a soft body\n  fix: hapticd "
+                                 "import --medial MESH.stl -o BODY.yaml makes one");
     const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
     return done ? kWorked : fail(kBadInput, done.error());
   }

@@ -368,6 +368,10 @@ def refuse(folder):
     check("an output of another kind is refused", code == 2 and ".ma or .yaml" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.ma"), "--mass", "0.1")
     check("a material for a file without materials is refused", code == 2 and "--mass has no effect" in said and "ends in .yaml" in said, said)
+    for body in (save(os.path.join(folder, "body.ma"), "1 0 0\nv 0 0 0 0.01\n"), os.path.join(folder, "open.obj")):
+        code, said = hapticd("import", "--calibrate", save(os.path.join(folder, "presses.csv"), "x,y,z,depth,force\n0,0,0.01,0.001,0.1\n"), body,
+                             "-o", os.path.join(folder, "fitted.yaml"))
+        check(f"{os.path.basename(body)} is not fitted, and what would be is told", code == 2 and "--medial MESH.stl -o BODY.yaml" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.yaml"), "--poisson", "0.4")
     check("Poisson's ratio alone is refused", code == 2 and "--young" in said, said)
 
