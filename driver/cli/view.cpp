@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_ending.hpp"
 #include "base/os.hpp"
 #include "cli/recording/recorded_models.hpp"
 #include "cli/run/view_process.hpp"
@@ -39,10 +40,19 @@ void passToView(int signal) {
   if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);
 }
 
+/// Returns how to see a file that is no recording, such as a part; "" for other files.
+std::string wayToSee(const std::string& file) {
+  const std::string ending = endingOf(file);
+  if (ending == ".yaml" || ending == ".yml") return "\n  fix: to see a scene, run it: hapticd run " + file + " --view";
+  if (ending == ".hpart" || ending == ".ma")
+    return "\n  fix: name it in a scene (geometry: " + file + "), then: hapticd run SCENE --view";
+  return "";
+}
+
 /// Shows a recording: this process draws the models, another one serves the page.
 int viewRecording(const ViewArguments& options) {
   auto models = RecordedModels::serve(options.file);
-  if (!models) return fail(kBadInput, models.error());
+  if (!models) return fail(kBadInput, models.error() + wayToSee(options.file));
   std::vector<std::string> arguments = argumentsOf(options);
   arguments.insert(arguments.end(), {"--file", options.file, "--drawings", (*models)->socket()});
   auto child = startView(arguments);

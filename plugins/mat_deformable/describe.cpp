@@ -121,10 +121,11 @@ std::string line(const Group& group, const char* who, const std::string& spring)
 /// Returns a warning: a ball touches, but the stiffness is that of a flat tip of another radius.
 std::string otherTip(double flat, double ball) {
   char text[256];
-  std::snprintf(text, sizeof text,
-                "probe_radius: young, poisson and thickness were converted for a flat tip of radius %.4g mm, but the "
-                "ball that touches has %.4g mm (tip_radius): if both are the same tip, write probe_radius: %.4g",
-                1e3 * flat, 1e3 * ball, ball);
+  std::snprintf(
+      text, sizeof text,
+      "tip_radius: the ball that touches has %.4g mm, but young, poisson and thickness were converted for a flat tip "
+      "of radius %.4g mm: if both are the same tip, write also probe_radius: %.4g",
+      1e3 * ball, 1e3 * flat, ball);
   return text;
 }
 

@@ -52,9 +52,6 @@ std::string otherCommand(const std::string& file) {
 
 /// Returns a message about options that have no effect with this format, or "".
 std::string misplaced(const ImportArguments& options, bool cad) {
-  const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
-  if (options.medial && turned)
-    return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
   if (!options.material.empty() && std::filesystem::path(options.out).extension() == ".ma")
     return options.material +
            " has no effect: a .ma file holds no material, expected a file to write that ends in .yaml; of a .ma "
@@ -93,7 +90,8 @@ int importSoftBody(const ImportArguments& options) {
   MedialImport body = options.body;
   body.file = options.file;
   body.out = options.out;
-  body.scale = options.placement.scale;
+  body.placement = options.placement;
+  body.placement.up = options.up[0];
   const auto mesh = readSurface(body, catalog());
   if (!mesh) return failLines(kBadInput, mesh.error());
   const auto done = importMedial(body, *mesh, catalog());
@@ -159,6 +157,10 @@ int importModel(const ImportArguments& options) {
   if (from_cad) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {
+    if (endingOf(options.file) == ".ma" || isMeshFile(options.file))
+      return fail(kBadInput, options.file +
+                                 ": holds no material, expected a model file (.yaml) of a soft body\n  fix: hapticd "
+                                 "import --medial MESH.stl -o BODY.yaml makes one");
     const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
     return done ? kWorked : fail(kBadInput, done.error());
   }

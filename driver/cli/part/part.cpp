@@ -196,11 +196,6 @@ void printInstances(const Json& info) {
   }
 }
 
-std::string sizeOf(const Json& loss) {
-  const double size = loss["size_m"].get<double>();
-  return size > 0 ? " (" + withDigits(size, 3) + " m)" : "";
-}
-
 /// Returns the file of a part, its unit, and how the import placed it.
 std::string sourceOf(const Json& source) {
   std::string text = source["file"].get<std::string>() + ", unit " + source["unit"].get<std::string>();
@@ -210,7 +205,7 @@ std::string sourceOf(const Json& source) {
   return text + (placed.empty() ? "" : ", " + placed);
 }
 
-void print(const std::string& file, const Json& info) {
+void print(const std::string& file, const Json& info, const std::vector<std::string>& losses) {
   std::printf("%s: %s, %zu bytes\n", file.c_str(), info["format"].get<std::string>().c_str(),
               info["bytes"].get<std::size_t>());
   std::printf("  from %s, tolerance %.3g m\n", sourceOf(info["source"]).c_str(), info["tolerance_m"].get<double>());
@@ -236,9 +231,7 @@ void print(const std::string& file, const Json& info) {
   }
   printBodies(info);
   printInstances(info);
-  for (const Json& loss : info["losses"])
-    std::printf("  lost: %s: %s%s\n", loss["what"].get<std::string>().c_str(),
-                loss["reason"].get<std::string>().c_str(), sizeOf(loss).c_str());
+  for (const std::string& loss : losses) std::printf("  %s\n", loss.c_str());
   for (const Json& warning : info["warnings"]) std::printf("  %s\n", warning.get<std::string>().c_str());
 }
 
@@ -295,11 +288,12 @@ int partInfo(const InfoArguments& options) {
     if (!options.feature.empty()) return printFeature(file, part, options.feature);
     if (options.axes) return printAxes(file, part);
     Json info = describe(part, bytes->size());
+    const std::vector<std::string> losses = brep::lossLines(part);
     addMeasures(info, std::move(part));
     if (options.json)
       printJson(info);
     else
-      print(file, info);
+      print(file, info, losses);
   } catch (const brep::PartError& error) {
     return fail(kBadInput, error.what());
   }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
 #include "cli/recording/name_tables.hpp"
 #include "cli/support/command.hpp"
@@ -68,8 +69,10 @@ std::string firstColumns(const record::RecordedStream& stream) {
 /// Returns what is wrong if the folder for all streams has the name of a file; "" if it has not.
 std::string fileForFolder(const record::Recording& recording, const std::filesystem::path& folder) {
   std::error_code none;
+  const std::string ending = endingOf(folder.string());
   const bool is_file = std::filesystem::is_regular_file(folder, none);
-  if (!is_file && (folder.extension() != ".csv" || std::filesystem::is_directory(folder, none))) return "";
+  const bool like_file = ending == ".csv" || ending == ".xlsx" || ending == ".ods";
+  if (!is_file && (!like_file || std::filesystem::is_directory(folder, none))) return "";
   const std::string name = folder.string();
   return "--csv " + name +
          " names a file, but each stream has a table of its own; expected a folder for all of them (--csv " +

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "base/clock.hpp"
+#include "base/file_ending.hpp"
 #include "base/os.hpp"
 #include "cli/run/outcome.hpp"
 #include "cli/run/signals.hpp"
@@ -140,6 +141,17 @@ Result<void> showPage(const RunArguments& options, const servo::RunFiles* files,
   return {};
 }
 
+/// Returns why a recording cannot have this file name, or "" if it can: a person who writes run.csv expects a table.
+std::string wrongRecording(const std::string& file) {
+  const std::string ending = endingOf(file);
+  for (const char* other : {".csv", ".mcap", ".json", ".svg", ".txt", ".xlsx"})
+    if (ending == other)
+      return file +
+             ": recordings are HDF5, expected a name that ends in .h5\n  fix: hapticd export RECORDING makes tables "
+             "(--csv FOLDER) or MCAP (--mcap FILE) of it";
+  return "";
+}
+
 /// Returns what is wrong with the files that the run must write; "" if nothing is.
 std::string wrongFiles(const RunArguments& options) {
   if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
@@ -151,7 +163,7 @@ std::string wrongFiles(const RunArguments& options) {
     if (const std::string wrong = whyNotWritten(file, kind, inputs); !wrong.empty()) return wrong;
   if (const std::string file = writtenTwice(options); !file.empty())
     return file + ": the file is named twice, expected different files for the scene, --report, --picture and --record";
-  return "";
+  return wrongRecording(options.record);
 }
 
 servo::RunOptions runOptions(const RunArguments& options, const scene::Scene& scene) {

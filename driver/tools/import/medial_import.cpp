@@ -143,26 +143,25 @@ void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
 /// same.
 Result<Triangles> closedSurface(const MeshFile& file, const MedialImport& options) {
   MeshReport done;
-  RepairedMesh repaired_mesh = repaired(file, options.scale, done);
+  RepairedMesh repaired_mesh = repaired(file, options.placement.scale, done);
   Triangles mesh{std::move(repaired_mesh.points), std::move(repaired_mesh.corners)};
   if (const auto closed = orientClosed(mesh, options.file); !closed) return Error{closed.error()};
   for (const std::string& line : linesOf(done)) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), line.c_str());
   return mesh;
 }
 
-}  // namespace
+/// Reads a model file with NURBS surfaces as triangles.
+Result<Triangles> readModel(const MedialImport& options, host::Catalog& catalog) {
+  const auto shape = activated("nurbs_rigid", options.file, catalog);
+  if (!shape) return Error{shape.error()};
+  // chord error as a share of the tolerance, so that the triangles are exact enough for it
+  constexpr double kOfTolerance = 0.25;
+  const double size = (*shape)->report().size_m * options.placement.scale;
+  const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / size : 1;
+  return tessellated(**shape, std::min(kChordShare, wanted));
+}
 
-Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog) {
-  if (!endsWith(options.out, ".ma") && !endsWith(options.out, ".yaml"))
-    return Error{options.out + ": the name does not say which format to write; expected one that ends in .ma or .yaml"};
-  if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
-    const auto shape = activated("nurbs_rigid", options.file, catalog);
-    if (!shape) return Error{shape.error()};
-    // chord error as a share of the tolerance, so that the triangles are exact enough for it
-    constexpr double kOfTolerance = 0.25;
-    const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / (*shape)->report().size_m : 1;
-    return tessellated(**shape, std::min(kChordShare, wanted));
-  }
+Result<Triangles> readMesh(const MedialImport& options) {
   document::Problems problems;
   const auto text = document::readFile(options.file, kMostFileBytes, problems);
   if (!text) return Error{problems.empty() ? options.file + ": cannot be read" : problems.front().text()};
@@ -173,6 +172,21 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
   auto read = parseMesh(*text, options.file);
   if (!read) return Error{read.error()};
   return closedSurface(*read, options);
+}
+
+}  // namespace
+
+Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog) {
+  if (!endsWith(options.out, ".ma") && !endsWith(options.out, ".yaml"))
+    return Error{options.out + ": the name does not say which format to write; expected one that ends in .ma or .yaml"};
+  const bool model =
+      endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json");
+  auto surface = model ? readModel(options, catalog) : readMesh(options);
+  Placement rest = options.placement;
+  if (!model) rest.scale = 1;  // the repair has scaled it
+  if (surface && (rest.scale != 1 || rest.fit > 0 || rest.center || rest.up != 'y'))
+    placePoints(surface->points, surface->corners, rest);
+  return surface;
 }
 
 Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog) {

@@ -5,13 +5,14 @@
 
 #include "base/result.hpp"
 #include "host/catalog.hpp"
+#include "import/bezier_import.hpp"
 #include "import/triangles.hpp"
 
 namespace hapticd::importing {
 
 struct MedialImport {
   std::string file, out;
-  double scale = 1;      ///< metres per unit of an OBJ or STL
+  Placement placement;
   double tolerance = 0;  ///< [m] tolerance of the medial axis; 0 means a hundredth of the body's size
   int samples = 20000;   ///< number of points on the surface
   int most_spheres = 2000;
@@ -21,7 +22,8 @@ struct MedialImport {
   double young = 0, poisson = 0.45, thickness = 0.02;
 };
 
-/// [main] Reads the closed surface of `options.file`. An error means that the file or a file name is wrong.
+/// [main] Reads the closed surface of `options.file` and brings it to its place. An error means that the file or a file
+/// name is wrong.
 Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog);
 
 /// [main] Finds the medial axis, writes `options.out` and measures the written body. Reports progress on standard error

@@ -1,7 +1,32 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/part/names.hpp"
 
+#include <cstdio>
+
 namespace hapticd::brep {
+
+std::vector<std::string> lossLines(const Part& part) {
+  std::vector<std::string> lines;
+  std::size_t splines = 0;
+  const Loss* worst = nullptr;
+  char size[64];
+  for (const Loss& loss : part.losses) {
+    if (loss.reason == kApproximated) {
+      ++splines;
+      if (worst == nullptr || loss.size > worst->size) worst = &loss;
+      continue;
+    }
+    std::snprintf(size, sizeof size, " (%.3g m)", loss.size);
+    lines.push_back("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? size : ""));
+  }
+  if (splines == 0) return lines;
+  std::snprintf(size, sizeof size, " by at most %.3g mm (", 1e3 * worst->size);
+  lines.push_back(std::to_string(splines) +
+                  (splines == 1 ? " curve or surface became a spline, and differs"
+                                : " curves and surfaces became splines, and differ") +
+                  size + worst->what + ")");
+  return lines;
+}
 
 std::string plainText(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {

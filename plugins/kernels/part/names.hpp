@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Names of the surfaces, instances and features of a part, for messages.
+/// Names of the surfaces, instances, features and losses of a part, for messages.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "kernels/part/part.hpp"
 
@@ -10,6 +11,12 @@ namespace hapticd::brep {
 /// The kinds of surfaces, in the order of SurfaceKind.
 inline constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
                                                 "B-spline", "extrusion", "revolution", "offset"};
+
+/// Reason of a loss (Loss::reason) that is none to a person: the piece is there, within rounding.
+inline constexpr const char* kApproximated = "approximated by a spline";
+
+/// [main] Returns a line for each loss, and one line for all pieces that became splines.
+std::vector<std::string> lossLines(const Part& part);
 
 /// [main] Replaces the control characters of a UTF-8 text by spaces. Names from other programs' files are shown in
 /// terminals, which would act on control characters.

@@ -151,12 +151,17 @@ def on_a_full_disk(folder, recording, path, file):
 def of_a_recording(folder, ask, recording):
     """What is asked of a recording that has no such part, or is to go where nothing can be written."""
     svg = write(folder, "rec.svg", "<svg/>")
+    write(folder, "part.hpart", "hapticd-part/1"), write(folder, "seen.yaml", "hapticd: 1\nmodels: []\n")
     for words, meant in ((("replay", recording, "--set", "part.stiffness=abc"), '"abc" is not a number, expected MODEL.PARAMETER=NUMBER'),
                          (("replay", recording, "--set", "stiffness=3"), "no model is named, expected MODEL.PARAMETER=NUMBER; did you mean part.stiffness=3?"),
                          (("replay", recording, "--set", "part.stiffness"), "no value is given, expected MODEL.PARAMETER=NUMBER"),
                          (("replay", recording, "--set", "prat.stiffness=3"), 'no model "prat", expected one of part (did you mean "part"?)'),
                          (("plot", recording, "--arm", "1"), "has no ticks of arm 1, expected --arm 0 (the recording has 1 arm)"),
                          (("export", recording, "--csv", svg), "names a file, but each stream has a table of its own; expected a folder"),
+                         (("export", recording, "--csv", os.path.join(folder, "run.xlsx")), "names a file, but each stream has a table of its own; expected a folder"),
+                         (("view", os.path.join(folder, "part.hpart")), "name it in a scene (geometry: "),
+                         (("view", os.path.join(folder, "seen.yaml")), "seen.yaml --view"),
+                         (("run", os.path.join(folder, "seen.yaml"), "--virtual-time", "--for", "0.01", "--record", os.path.join(folder, "run.csv")), "recordings are HDF5, expected a name that ends in .h5"),
                          (("export", recording, "--csv", "/nonexist/x", "--stream", "ticks"), "expected a file in a folder that you may write to"),
                          (("export", recording, "--mcap", "/nonexist/x"), "expected a file in a folder that you may write to")):
         code, out, err = ask(*words)

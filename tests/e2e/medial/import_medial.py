@@ -145,6 +145,25 @@ def tissue(folder):
     check("it is felt as stiff as the formula says", said and abs(float(said[1]) / expected - 1) < .01, (expected, text))
 
 
+def place(folder):
+    """A mesh far off, in millimetres and with z up comes to the hand as a part does."""
+    points, faces = capsule(.06, .01), os.path.join(folder, "far.obj")
+    moved = "".join(f"v {float(x) * 1e3 + 300} {float(y) * 1e3 - 40} {float(z) * 1e3 + 7}\n" if kind == "v" else line + "\n"
+                    for line in points.splitlines() for kind, x, y, z in [(line.split() + [""] * 4)[:4]])
+    out = os.path.join(folder, "far.ma")
+    spheres = {}
+    for name, options in (("centred", ["--scale", "0.001", "--center"]), ("fitted", ["--fit", "0.04", "--center"]), ("turned", ["--scale", "0.001", "--center", "--up", "z"])):
+        code, text = hapticd("import", "--medial", save(faces, moved), "-o", out, *options, *FEWER)
+        check(f"a mesh far off is imported and {name}", code == 0, text)
+        spheres[name] = read(out)[0]
+    ends = {name: [max(s[k] for s in all) for k in range(3)] for name, all in spheres.items()}
+    middle = {name: [(max(s[k] for s in all) + min(s[k] for s in all)) / 2 for k in range(3)] for name, all in spheres.items()}
+    check("its middle is the origin", all(abs(m) < 1e-3 for one in middle.values() for m in one), middle)
+    check("its length is along the axis that it had", ends["centred"][2] > .02 > 5e-3 > abs(ends["centred"][1])
+          and ends["turned"][1] > .02 > 5e-3 > abs(ends["turned"][2]), ends)
+    check("it has the size that was asked for", abs(ends["fitted"][2] + max(s[3] for s in spheres["fitted"]) - .02) < 1e-3, ends)
+
+
 def recoverBranches(folder):
     """From the shipped branching body: its own triangles, drawn and read again."""
     out = os.path.join(folder, "branch.ma")
@@ -349,6 +368,10 @@ def refuse(folder):
     check("an output of another kind is refused", code == 2 and ".ma or .yaml" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.ma"), "--mass", "0.1")
     check("a material for a file without materials is refused", code == 2 and "--mass has no effect" in said and "ends in .yaml" in said, said)
+    for body in (save(os.path.join(folder, "body.ma"), "1 0 0\nv 0 0 0 0.01\n"), os.path.join(folder, "open.obj")):
+        code, said = hapticd("import", "--calibrate", save(os.path.join(folder, "presses.csv"), "x,y,z,depth,force\n0,0,0.01,0.001,0.1\n"), body,
+                             "-o", os.path.join(folder, "fitted.yaml"))
+        check(f"{os.path.basename(body)} is not fitted, and what would be is told", code == 2 and "--medial MESH.stl -o BODY.yaml" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.yaml"), "--poisson", "0.4")
     check("Poisson's ratio alone is refused", code == 2 and "--young" in said, said)
 
@@ -372,6 +395,6 @@ def fullDisk(folder):
 
 
 with tempfile.TemporaryDirectory() as work:
-    for case in (recoverTorus, recoverCapsule, tissue, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, repairFirst, refuse, fullDisk):
+    for case in (recoverTorus, recoverCapsule, tissue, place, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, repairFirst, refuse, fullDisk):
         case(work)
 finish()

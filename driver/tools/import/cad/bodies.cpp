@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "cad_import/doubled_faces.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -94,7 +95,7 @@ void BodyBuilder::cutBack(const Sizes& to) {
 void BodyBuilder::note(const std::string& what, const Kept& kept) {
   if (kept.error > 0)
     part_.losses.push_back({what + " of face " + std::to_string(part_.faces.size()) + " of '" + name_ + "'",
-                            "approximated by a spline", kept.error, static_cast<std::uint32_t>(part_.faces.size())});
+                            brep::kApproximated, kept.error, static_cast<std::uint32_t>(part_.faces.size())});
 }
 
 std::uint32_t BodyBuilder::vertexOf(const TopoDS_Vertex& vertex) {

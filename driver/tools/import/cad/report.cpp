@@ -97,11 +97,14 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   };
   for (const auto& said : {stepsOf(report), part.warnings, report.measures.notes})
     for (const std::string& line : said) add(line);
-  for (const brep::Loss& loss : part.losses)
-    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + withDigits(loss.size, 3) + " m)" : ""));
+  bool lost = false;
+  for (const std::string& line : brep::lossLines(part)) {
+    add(line);
+    lost = lost || line.starts_with("lost: ");
+  }
   if (lines > kMostLines)
     text += "  and " + std::to_string(lines - kMostLines) + " more lines: --json lists them all\n";
-  if (part.losses.empty()) text += "  nothing was lost\n";
+  if (!lost) text += "  nothing was lost\n";
   return text;
 }
 

@@ -77,7 +77,7 @@ std::string warned(const char* material, std::initializer_list<std::pair<const c
 
 TEST(TipRadius, WarnsIfTheStiffnessIsThatOfATipOfAnotherRadius) {
   const std::string tissue = "young: 10e3\n  poisson: 0.45\n  thickness: 0.02";
-  EXPECT_NE(warned(tissue.c_str(), {{"tip_radius", 3e-3}}).find("write probe_radius: 0.003"), std::string::npos);
+  EXPECT_NE(warned(tissue.c_str(), {{"tip_radius", 3e-3}}).find("write also probe_radius: 0.003"), std::string::npos);
   EXPECT_EQ(warned(tissue.c_str(), {{"tip_radius", 3e-3}, {"probe_radius", 3e-3}}), "");
   EXPECT_EQ(warned(tissue.c_str(), {}), "") << "a point has no radius of its own";
   EXPECT_EQ(warned("stiffness: 300", {{"tip_radius", 3e-3}}), "");

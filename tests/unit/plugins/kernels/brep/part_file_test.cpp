@@ -8,6 +8,7 @@
 
 #include "kernels/part/crc32c.hpp"
 #include "kernels/part/file.hpp"
+#include "kernels/part/names.hpp"
 #include "kernels/part/sections.hpp"
 #include "sample_parts.hpp"
 
@@ -141,6 +142,20 @@ TEST(PartCheck, SurvivesAnyWordOfARecordSpoilt) {
       EXPECT_EQ(errorOf([&] { readPart(bytesOf(writePart(part)), "x"); }), "");
   }
   EXPECT_GT(refused, 5000);
+}
+
+TEST(PartNames, TellEachLossAndAllSplinesTogether) {
+  Part part;
+  EXPECT_TRUE(lossLines(part).empty());
+  part.losses = {{"edge 1 of face 0 of 'nut'", kApproximated, 1e-11, 0},
+                 {"face 2 of 'nut'", "it has no outline", 0.03, 2},
+                 {"pcurve of edge 1 of face 0 of 'nut'", kApproximated, 2e-10, 0},
+                 {"the part in the file 'lid.step'", "there is no such file", 0, kNone}};
+  EXPECT_EQ(lossLines(part),
+            (std::vector<std::string>{"lost: face 2 of 'nut': it has no outline (0.03 m)",
+                                      "lost: the part in the file 'lid.step': there is no such file",
+                                      "2 curves and surfaces became splines, and differ by at most 2e-07 mm (pcurve of "
+                                      "edge 1 of face 0 of 'nut')"}));
 }
 
 }  // namespace
