@@ -186,7 +186,7 @@ void addMaterialOptions(const Command& command, const Option& medial, MedialImpo
           .needs(medial)
           .excludes(stiffness);
   command.addOption("--poisson", body.poisson, "its Poisson's ratio; default: 0.45").within(0.0, 0.5).needs(young);
-  command.addOption("--thickness", body.thickness, "its thickness [m]; default: 0.02").within(1e-5, 1.0).needs(young);
+  young.needs(command.addOption("--thickness", body.thickness, "its thickness [m]").within(1e-5, 1.0).needs(young));
   command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file; default: 0.5")
       .within(0.0, 1e6)
       .needs(medial);

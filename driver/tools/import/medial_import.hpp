@@ -19,7 +19,7 @@ struct MedialImport {
   double least_angle = 60;  ///< [degrees] see MedialOptions
   double stiffness = 300, damping = 0.5, mass = 0.01;
   /// [Pa], 1, [m] of a layer of tissue, instead of the stiffness; young 0: not given
-  double young = 0, poisson = 0.45, thickness = 0.02;
+  double young = 0, poisson = 0.45, thickness = 0;
 };
 
 /// [main] Reads the closed surface of `options.file` and brings it to its place. An error means that the file or a file

@@ -15,8 +15,8 @@ std::string notClosed(const std::string& file, std::size_t edges, const Eigen::V
   char text[320];
   std::snprintf(text, sizeof text,
                 ": the surface is not closed: %zu edge%s at a hole, or %s triangles turned against each other, the "
-                "first at (%.4g, %.4g, %.4g) m; expected a closed surface\n  fix: without --medial, import lists the "
-                "holes: hapticd import ",
+                "first at (%.4g, %.4g, %.4g) m; expected a closed surface\n  fix: close it in the program that made "
+                "it; without --medial, import lists the holes: hapticd import ",
                 edges, edges == 1 ? " is" : "s are", edges == 1 ? "has" : "have", first.x(), first.y(), first.z());
   return file + text + file + " -o part.hpart";
 }

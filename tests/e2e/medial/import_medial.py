@@ -374,6 +374,8 @@ def refuse(folder):
         check(f"{os.path.basename(body)} is not fitted, and what would be is told", code == 2 and "--medial MESH.stl -o BODY.yaml" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.yaml"), "--poisson", "0.4")
     check("Poisson's ratio alone is refused", code == 2 and "--young" in said, said)
+    code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.yaml"), "--young", "10e3")
+    check("a modulus without the thickness of the layer is refused", code == 2 and "--thickness" in said, said)
 
 
 def fullDisk(folder):
