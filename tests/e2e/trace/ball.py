@@ -55,6 +55,16 @@ def convex():
     check("the ball touches in many of these ticks", sum(r["contact"] for r in rows) > 1000)
 
 
+def begins_in_a_slot():
+    slot = block([-0.05, -0.05, -0.02], [-0.002, 0.05, 0]) + block([0.002, -0.05, -0.02], [0.05, 0.05, 0])
+    out = line((2e-4, 0, -0.015), (2e-4, 0, 0.004), 2000)
+    rows = roll(slot, out)
+    steps = [math.dist(*((r["fx"], r["fy"], r["fz"]) for r in pair)) for pair in zip(rows, rows[1:])]
+    check("a ball that began in a slot that is too narrow comes out without a blow", max(steps) < 0.1, max(steps))
+    rows = roll(slot, out + line(out[-1], (0.02, 0, 0.004)) + line((0.02, 0, 0.004), (0.02, 0, 0.001)))
+    check("and is felt from then on", abs(rows[-1]["fz"] - STIFFNESS * 0.002) < 1e-6, rows[-1]["fz"])
+
+
 def concave():
     points = line((0.01, 0, 0.01), (0.0185, 0, 0.001)) + line((0.0185, 0, 0.001), (0.0185, 0.01, -0.002))
     rows = roll(BLOCK + WALL, points)
@@ -117,6 +127,7 @@ def search():
 convex()
 concave()
 groove()
+begins_in_a_slot()
 shells()
 states()
 search()
