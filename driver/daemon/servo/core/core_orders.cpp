@@ -85,7 +85,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
     if (settings_.former_claims)
       claim.forget();
     else
-      claim.expectChange();
+      claim.expectChange(host::needsConsent(plugin, order.param));
   }
   return true;
 }
