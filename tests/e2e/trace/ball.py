@@ -122,6 +122,11 @@ def search():
     rows = roll(BLOCK, points, {"tip_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
     wanted = [[0, 0, STIFFNESS * max(0.05 - z, 0)] for _, _, z in points]
     check("a ball that is larger than the activation radius touches when it should", worst(rows, wanted) < 1e-6, worst(rows, wanted))
+    corner = [quad([0, 0, -0.2], [0, 0, 0.4], [0.3, 0, 0], "floor"), quad([0, 0, -0.2], [0, 0.3, 0], [0, 0, 0.4], "wall")]
+    points = line((0.05, 0.01, 0), (0.05, -0.04, 0)) + line((0.05, -0.04, 0), (-0.02, -0.04, 0))
+    rows = roll(corner, points, servo={"activation_radius": 0.01, "hysteresis": 0.002})
+    wanted = [[STIFFNESS * max(RADIUS - x, 0), STIFFNESS * max(RADIUS - y, 0), 0] for x, y, _ in points]
+    check("a ball pressed deeper than the activation radius meets a wall on its way", worst(rows, wanted) < 1e-6, worst(rows, wanted))
 
 
 convex()
