@@ -12,6 +12,8 @@ namespace {
 // least component of the normal along the axis, of either sign: on steeper flanks a push hardly moves the button
 constexpr double kSteepest = 0.1;
 
+constexpr double kGone = 0.05;  // [s] the host counts an arm as lost after this time without a sample
+
 /// Returns the flags (HSP_OUT_*) of a step of the button. @param button the button after the step
 uint32_t clickOf(const dynamics::ButtonState& button, const dynamics::ButtonState::Step& step) noexcept HSP_RT {
   if (!step.clicked) return 0;
@@ -33,7 +35,7 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   const double* q = activation.pose.orientation;
   turn_ = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
   button_.reset();
-  last_x2_ = stored_ = 0;
+  last_x2_ = stored_ = blind_for_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.reserve(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
@@ -49,12 +51,13 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
 void PushButton::reset() noexcept HSP_RT {
   TracedShape::reset();
   button_.reset();
-  stored_ = 0;
+  stored_ = blind_for_ = 0;
 }
 
 /// Lists the probes that may press, measured on the cap at each probe. If the cap's normal is tilted, its stiffness
 /// counts with the square of the normal's component along the axis. Returns false if it is not known whether the button
-/// is pressed.
+/// is pressed, since the sample of a finger is lost; an arm that gives no sample for longer is gone, and presses
+/// nothing.
 bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
   presses_.clear();
   bool blind = false, pressed = false;
@@ -69,7 +72,8 @@ bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
     presses_.push_back({stiffness_ * along * along, travel, along < 0});
     pressed |= along > 0 && travel > 0;
   }
-  return pressed || !blind;
+  blind_for_ = blind ? blind_for_ + step.dt_s : 0;
+  return pressed || !blind || blind_for_ > kGone;
 }
 
 /// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of

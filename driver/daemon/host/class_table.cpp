@@ -72,6 +72,10 @@ bool stiffens(const hsp_class& shape, uint32_t param) noexcept {
   return isNumberIn("N/m", shape, param);
 }
 
+bool needsConsent(const hsp_class& shape, uint32_t param) noexcept {
+  return param < shape.param_count && (paramAt(shape, param).flags & HSP_P_SAFETY) != 0;
+}
+
 bool complete(const hsp_class& shape) {
   return HSP_HAS(&shape, step) && shape.create && shape.destroy && shape.activate && shape.deactivate && shape.reset &&
          shape.step && (shape.param_count == 0 || (shape.set != nullptr && shape.params != nullptr));

@@ -38,6 +38,8 @@ inline const char* textOf(const char* text) noexcept {
 bool damps(const hsp_class& shape, uint32_t param) noexcept;
 /// [any] True if the parameter is a stiffness: a number in N/m.
 bool stiffens(const hsp_class& shape, uint32_t param) noexcept;
+/// [any] True if a live parameter is set only with the consent of the person at the arm (HSP_P_SAFETY).
+bool needsConsent(const hsp_class& shape, uint32_t param) noexcept;
 
 /// [main] Returns the class with that name (or id) in an entry; nullptr if there is none.
 template <class Class, class Entry>

@@ -107,14 +107,17 @@ Foot BallProxy::felt(Foot foot, const Eigen::Vector3d& p, double radius) noexcep
     faceFrom(center_, radius);
     supports_.turnTo(center_, radius);
   }
-  if (!found(foot) || !fits_) {
+  if (!found(foot) || !fits_ || (waits_ && (center_ - p).norm() > kSettled)) {
+    const bool waits = waits_ || found(foot);
     forget();
+    waits_ = waits;
     lag_ = lag;
     if (found(foot)) foot.status = FootStatus::kDegraded;
     foot.distance = (p - foot.point).norm();
     foot.depth = -foot.distance;
     return foot;
   }
+  waits_ = false;
   const Eigen::Vector3d out = center_ - p;
   const double depth = out.norm();
   chooseFoot(out, foot);

@@ -21,7 +21,7 @@ class BallProxy {
   /// [rt] Returns the contact of the ball about p, which is that of the point p with the surface of all places where
   /// the ball just touches the model (the offset surface). So point and depth are on that surface: in contact the point
   /// is the proxy's centre. All else is that of the centre's foot. A ball that begins where it does not fit, as inside
-  /// a shell, feels nothing until it fits; the status is kDegraded.
+  /// a shell, feels nothing until it fits about p, else a force would begin at once; the status is kDegraded.
   /// @param foot_at function that returns the foot of a centre, as felt from outside; it is called kMostFeet times at
   /// most
   /// @param p position of the probe [m], in the model frame; finite
@@ -63,6 +63,7 @@ class BallProxy {
   double stride_ = 1;                   ///< see adaptStride()
   double lag_ = 0;                      ///< see lag()
   bool known_ = false;
+  bool waits_ = false;        ///< the ball did not fit where it began
   bool fits_ = false;         ///< the ball was seen to be free since it began
   bool has_reached_ = false;  ///< no foot has shown that the ball does not fit at reached_
 };

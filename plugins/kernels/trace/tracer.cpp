@@ -31,6 +31,14 @@ bool isNearPole(const Patch& patch, const Array2d& uv) noexcept {
   return false;
 }
 
+/// True if a step of direct parametric tracing led away: the probe is now farther aside of its foot than the step was
+/// long. So it is farther from the surface than the radius of its curvature, where these steps leave the foot.
+inline bool ledAway(const LocalFoot& foot) noexcept {
+  constexpr double kSettled = 1e-6;  // [m] a shorter step is a rounding error, or leads nowhere
+  const double aside2 = foot.distance * foot.distance - foot.height * foot.height;
+  return foot.residual > kSettled && foot.sides == 0 && aside2 > foot.residual * foot.residual;
+}
+
 }  // namespace
 
 Tracer::Tracer(const Model& model) : model_(model), tracks_(model) {}
@@ -86,10 +94,14 @@ bool Tracer::active(int surface) const noexcept {
 /// Computes the foot near `at` on a patch. @param steps of method kDirect
 inline void Tracer::findFoot(const Patch& patch, Iterate& at, const Vector3d& p, const TraceOptions& options, int steps,
                              LocalFoot& foot) noexcept {
-  if (options.method == Method::kDirect && !isNearPole(patch, at.uv))
+  if (options.method == Method::kDirect && !isNearPole(patch, at.uv)) {
     directFoot(patch, p, at, steps, budget_, foot);
-  else
-    newtonFoot(patch, p, at, std::max(options.tolerance, 0.0), budget_, foot);
+    budget_ -= foot.evaluations;
+    if (!ledAway(foot)) return;
+    foot.converged = false;
+    if (budget_ <= 0) return;
+  }
+  newtonFoot(patch, p, at, std::max(options.tolerance, 0.0), budget_, foot);
   budget_ -= foot.evaluations;
 }
 

@@ -55,6 +55,16 @@ def convex():
     check("the ball touches in many of these ticks", sum(r["contact"] for r in rows) > 1000)
 
 
+def begins_in_a_slot():
+    slot = block([-0.05, -0.05, -0.02], [-0.002, 0.05, 0]) + block([0.002, -0.05, -0.02], [0.05, 0.05, 0])
+    out = line((2e-4, 0, -0.015), (2e-4, 0, 0.004), 2000)
+    rows = roll(slot, out)
+    steps = [math.dist(*((r["fx"], r["fy"], r["fz"]) for r in pair)) for pair in zip(rows, rows[1:])]
+    check("a ball that began in a slot that is too narrow comes out without a blow", max(steps) < 0.1, max(steps))
+    rows = roll(slot, out + line(out[-1], (0.02, 0, 0.004)) + line((0.02, 0, 0.004), (0.02, 0, 0.001)))
+    check("and is felt from then on", abs(rows[-1]["fz"] - STIFFNESS * 0.002) < 1e-6, rows[-1]["fz"])
+
+
 def concave():
     points = line((0.01, 0, 0.01), (0.0185, 0, 0.001)) + line((0.0185, 0, 0.001), (0.0185, 0.01, -0.002))
     rows = roll(BLOCK + WALL, points)
@@ -112,11 +122,17 @@ def search():
     rows = roll(BLOCK, points, {"tip_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
     wanted = [[0, 0, STIFFNESS * max(0.05 - z, 0)] for _, _, z in points]
     check("a ball that is larger than the activation radius touches when it should", worst(rows, wanted) < 1e-6, worst(rows, wanted))
+    corner = [quad([0, 0, -0.2], [0, 0, 0.4], [0.3, 0, 0], "floor"), quad([0, 0, -0.2], [0, 0.3, 0], [0, 0, 0.4], "wall")]
+    points = line((0.05, 0.01, 0), (0.05, -0.04, 0)) + line((0.05, -0.04, 0), (-0.02, -0.04, 0))
+    rows = roll(corner, points, servo={"activation_radius": 0.01, "hysteresis": 0.002})
+    wanted = [[STIFFNESS * max(RADIUS - x, 0), STIFFNESS * max(RADIUS - y, 0), 0] for x, y, _ in points]
+    check("a ball pressed deeper than the activation radius meets a wall on its way", worst(rows, wanted) < 1e-6, worst(rows, wanted))
 
 
 convex()
 concave()
 groove()
+begins_in_a_slot()
 shells()
 states()
 search()

@@ -21,7 +21,7 @@ struct Still : hapticd::Shape {
 
 /// From tick `after` on its force leaves what any motion explains.
 struct Kicking : hapticd::Shape {
-  int how = 0, after = 100, ticks = 0;
+  int how = 0, after = 100, every = 1, ticks = 0;
   double size = 8, jump = 0;
   static constexpr const char* kHows[] = {"turns", "vibrates", "steps", "traced_turns", "hides", "spins", "stretches"};
   static constexpr hapticd::ShapeInfo kInfo{
@@ -34,7 +34,8 @@ struct Kicking : hapticd::Shape {
                                 "stretches: by a quaternion of length 100"),
                       F::integer("after", &Kicking::after, "", 0, 1000000, 100, "Ticks of peace."),
                       F::real("size", &Kicking::size, "N", 0, 1000, 8, "Of the force."),
-                      F::real("jump", &Kicking::jump, "N", 0, 1000, 0, "That it reports to jump by; 0: nothing.")};
+                      F::real("jump", &Kicking::jump, "N", 0, 1000, 0, "That it reports to jump by; 0: nothing."),
+                      F::integer("every", &Kicking::every, "", 1, 1000, 1, "Ticks from turn to turn.")};
   }
   void activate(const hsp_activation&, hsp_report& report) {
     if (jump > 0) hapticd::reportJumps(report, jump);
@@ -43,7 +44,7 @@ struct Kicking : hapticd::Shape {
   hsp_status touch(const hsp_probe&, const hsp_step& step, hsp_contact& out) noexcept HSP_RT {
     const int since = ticks++ - after;
     if (since < 0) return HSP_OK;
-    const double sign = since % 2 == 0 ? 1 : -1;
+    const double sign = since / every % 2 == 0 ? 1 : -1;
     out.force[1] = sign * size;
     if (how == 1) out.force[1] = size * std::sin(2 * M_PI * 50 * since * 1e-3);
     if (how == 2) out.force[1] = size;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A plugin's force is compared, as a vector in the world, with what the probe's motion and the plugin's own claims
 /// explain; traced or not, claimed or not.
+#include <cmath>
 #include <tuple>
 
 #include "scenario.hpp"
@@ -211,6 +212,24 @@ TEST(ForceWithoutASurface, IsNotCountedWhileAModelFadesOut) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
   press(scenario);
   EXPECT_EQ(scenario.telemetry().report({}).models[0].contact.untraced().ticks, 0u);
+}
+
+/// A hand that is thrown to and fro: its way explains the change of the force, and the force gives it energy each time.
+TEST(ASurfaceThatTurnsRound, IsSilencedAlthoughTheHandGoesAlong) {
+  for (const int every : {10, 20, 40, 60}) {
+    scene::Model model = kicking(kTracedTurns, 8);
+    model.parameters.push_back(value(4, HSP_INT, every));
+    Scenario scenario({.models = {model}, .limit = bare});
+    double y = 0;
+    const std::vector<Sent> sent = scenario.run(2, [&](double t) {
+      y += t < 0.1 ? 0 : 1e-3 * (static_cast<int>(std::lround(1e3 * t) - 100) / every % 2 == 0 ? 1 : -1);  // 1 m/s
+      scenario.moveTo({0, y, 0});
+      return Nanoseconds{0};
+    });
+    EXPECT_EQ(scenario.trouble(), ShapeFault::kGives) << every;
+    EXPECT_EQ(sent.back().force.norm(), 0) << every;
+    EXPECT_NE(silenceReason(scenario.core().models()[0]).find("energy from nowhere"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "servo/core/order.hpp"
 #include "servo/core/path.hpp"
 #include "servo/safety/claim.hpp"
+#include "servo/safety/energy_account.hpp"
 #include "servo/safety/guard.hpp"
 #include "servo/safety/passivity/controller.hpp"
 
@@ -64,6 +65,7 @@ struct ModelState {
   Breach breach;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< bounds on the change of its force
+  EnergyAccount energy;       ///< of its surface
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
@@ -192,6 +194,7 @@ class Core {
   ShapeFault holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
   bool holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT;
   bool pulls(ModelState& model) noexcept HSP_RT;
+  bool gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
   ShapeFault holdToTime(ModelState& model) noexcept HSP_RT;
   ShapeFault takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
   Vector3d touchedPlace(uint32_t index, uint32_t probe) const noexcept HSP_RT;
@@ -213,7 +216,8 @@ class Core {
   std::vector<uint32_t> live_;  // see live(). It is in scene order, so that forces are always added in the same order
   std::vector<Load> loads_;     // costs of the models that were stepped
   LoadShedding shedding_;
-  std::vector<Claim> claims_;  // see at()
+  std::vector<Claim> claims_;     // see at()
+  std::vector<LastPush> pushes_;  // see at()
   // The answer that is being judged. It is a member, because constructing it for each answer would take as long as
   // judging it.
   ClaimStep claim_step_;

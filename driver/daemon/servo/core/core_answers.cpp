@@ -119,6 +119,7 @@ Vector3d carried(const ModelState& model, const Vector3d& from) noexcept HSP_RT 
     if (beyond != ShapeFault::kNone) fault = model.guard.strike(beyond, kJumps);
   }
   if ((model.shape->report().flags & HSP_R_PUSHES) != 0 && pulls(model)) return model.guard.enter(ShapeFault::kPulls);
+  if (gives(model, index, dt)) return model.guard.enter(ShapeFault::kGives);
   return fault == ShapeFault::kNone ? holdToTime(model) : fault;
 }
 
@@ -163,6 +164,25 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
     return true;
   }
   return false;
+}
+
+/// Returns true if the surface of a model gave energy from nowhere. What is soft gives back what it stored at another
+/// place, a shape that reports jumps gives energy on purpose, and a force without a contact may be a push or a magnet.
+bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
+  if ((model.shape->description().flags & HSP_C_DEFORMS) != 0 || model.claims.jump > 0) return false;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const hsp_probe& in = inputs_[i];
+    const hsp_contact& out = outputs_[i];
+    LastPush& last = pushes_[at(index, i)];
+    if ((in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) last.known = false;
+    if ((in.flags & HSP_IN_INVALID) != 0) continue;
+    const bool touches = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0;
+    Vector3d force = touches ? Vector3d(ConstMap(out.force)) : Vector3d::Zero();
+    if (const double most = uses_.max_force[i], size = force.norm(); most > 0 && size > most) force *= most / size;
+    const Vector3d p = model.claims.moves_itself ? model.frame.pointToModel(last_position_[i]) : ConstMap(in.position);
+    model.energy.add(force, p, touches ? out.depth_m : 0, last);
+  }
+  return model.energy.closeStep(dt);
 }
 
 /// Returns the place of a model on which its force of the last tick acts.
@@ -276,6 +296,7 @@ void Core::clearContacts(uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     contacts_[at(index, i)] = Contact{};
     claims_[at(index, i)].forget();
+    pushes_[at(index, i)].known = false;
   }
 }
 

@@ -77,7 +77,7 @@ double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& chan
 /// True if force and torque may change in this step without an explanation. Each such step uses up one allowed change.
 bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   jumps_ = jumps_ || takePass(step);
-  if (jumps_ || !asked_ || asked_passes_ < 1) return jumps_;
+  if (jumps_ || !consented_ || asked_passes_ < 1) return jumps_;
   asked_passes_ -= 1;
   return jumps_ = true;
 }
@@ -132,7 +132,7 @@ bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
 /// Remembers only the values that the next step needs, because it runs for each shape, probe and tick.
 void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT {
   known_ = (step.in & HSP_IN_INVALID) == 0;
-  asked_ = jumps_ = false;
+  asked_ = consented_ = jumps_ = false;
   if ((step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0 && !step.former) finds_anew_ = kFindsAnew;
   traced_ = (step.out & HSP_OUT_TRACED) != 0;
   p_model_ = step.p_model;

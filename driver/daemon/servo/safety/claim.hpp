@@ -68,9 +68,9 @@ class Claim {
   /// [m] Assumed distance from the tip to the point at which the hand holds the handle. With this lever, the bound on
   /// forces becomes a bound on torques.
   static constexpr double kHandle = 0.1;
-  /// The force may change by any amount in the step after a live parameter was set. kAsked such changes may come in a
-  /// row. After that, kAskedPerSecond of them are allowed per second, because a program that sets parameters in every
-  /// tick must not allow a plugin to kick.
+  /// The force may change by any amount in the step after a live parameter was set with consent (HSP_P_SAFETY). kAsked
+  /// such changes may come in a row. After that, kAskedPerSecond of them are allowed per second, because a program that
+  /// sets parameters in every tick must not allow a plugin to kick.
   static constexpr double kAsked = 3, kAskedPerSecond = 2;
   /// [s] After a live parameter was set, a large change of the force is let through slowly. For at most this time,
   /// holding it back is not counted against the plugin (Guard::strike()).
@@ -88,8 +88,12 @@ class Claim {
   /// the probe in the last step, which both need.
   Eigen::Vector3d checkTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Somebody set a live parameter of the model: in the next step the force may change without an explanation.
-  void expectChange() noexcept HSP_RT { asked_ = true; }
+  /// [rt] Somebody set a live parameter of the model. In the next step the force may change without an explanation: at
+  /// once if the person at the arm agreed, else slowly.
+  void expectChange(bool consented) noexcept HSP_RT {
+    asked_ = true;
+    consented_ = consented_ || consented;
+  }
 
   /// [rt] True if a change that was held back is not the plugin's fault, because somebody set a parameter or the probe
   /// jumped.
@@ -119,8 +123,9 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  // asked_: a parameter was set before this step. jumps_: force and torque may jump in this step
-  bool asked_ = false, jumps_ = false;
+  // asked_: a parameter was set before this step. consented_: by the person at the arm. jumps_: force and torque may
+  // jump in this step
+  bool asked_ = false, consented_ = false, jumps_ = false;
   double passes_ = kPasses, turns_ = kTurns, asked_passes_ = kAsked;
   double excused_ = 0, finds_anew_ = 0;  // [s] time that is left of kExcused, and of kFindsAnew
   // [N], [N m] the force and the torque that the last pass let through

@@ -20,7 +20,8 @@ enum class ShapeFault : uint8_t {
   kNotUnit,    ///< a pose had a quaternion whose length is not 1
   kPulls,      ///< its surface pulled the probe in, although the shape claims only to push
   kTwists,     ///< its torque repeatedly jumped by more than its claims allow
-  kRunsAway    ///< a place of it that was touched repeatedly came faster than any tip does
+  kRunsAway,   ///< a place of it that was touched repeatedly came faster than any tip does
+  kGives       ///< its surface gave the probes energy from nowhere
 };
 
 /// Fades the force of one shape. All times are sums of dt.

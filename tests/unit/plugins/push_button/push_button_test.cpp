@@ -175,6 +175,20 @@ TEST(PushButton, ABadSampleLeavesItPressedAndLettingGoBringsItBack) {
   EXPECT_NEAR(plugin.force().y(), forceOnBranch(button, 0.001, true), 1e-9);
 }
 
+/// An arm that is gone holds no button down.
+TEST(PushButton, ComesBackIfNoSampleComesAnyMore) {
+  const Button button;
+  PluginUnderTest plugin;
+  button.make(plugin);
+  plugin.tick({{0, kTop + 1e-3, 0}});
+  for (int i = 0; i < 5; ++i) plugin.tick({{0, kTop - 0.008, 0}});
+  const double pressed = plugin.position().y();
+  for (int i = 0; i < 40; ++i) plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
+  EXPECT_EQ(plugin.position().y(), pressed);
+  for (int i = 0; i < 20; ++i) plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
+  EXPECT_EQ(plugin.position().y(), 0);
+}
+
 TEST(PushButton, EnergyOverAPressIsNeverGained) {
   const Button button;
   PluginUnderTest plugin;

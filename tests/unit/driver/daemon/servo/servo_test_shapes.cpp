@@ -25,8 +25,9 @@ struct Wall : hapticd::Shape {
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.wall", "wall", "1.0.0", "MIT", "A wall."};
   static constexpr auto fields() {
     using F = Fields<Wall>;
-    return std::array{F::real("stiffness", &Wall::stiffness, "N/m", 0, 1e6, 1000, "Stiffness.", HSP_P_LIVE),
-                      F::real("damping", &Wall::damping, "N s/m", 0, 1e3, 0, "Damping.")};
+    return std::array{
+        F::real("stiffness", &Wall::stiffness, "N/m", 0, 1e6, 1000, "Stiffness.", HSP_P_LIVE | HSP_P_SAFETY),
+        F::real("damping", &Wall::damping, "N s/m", 0, 1e3, 0, "Damping.")};
   }
   void activate(const hsp_activation&, hsp_report& report) {
     report.max_stiffness = stiffness;
@@ -137,18 +138,19 @@ struct Aligning : hapticd::Shape {
 
 /// Pushes as it is told while it runs; or also turns round in each tick.
 struct Obliging : hapticd::Shape {
-  double wish;
+  double wish, whim;
   bool kicks;
   int ticks = 0;
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.obliging", "obliging", "1.0.0", "MIT", "Obliges."};
   static constexpr auto fields() {
     using F = Fields<Obliging>;
-    return std::array{F::real("wish", &Obliging::wish, "N", 0, 1e3, 0, "Force.", HSP_P_LIVE),
-                      F::boolean("kicks", &Obliging::kicks, false, "It takes each tick as its chance.")};
+    return std::array{F::real("wish", &Obliging::wish, "N", 0, 1e3, 0, "Force.", HSP_P_LIVE | HSP_P_SAFETY),
+                      F::boolean("kicks", &Obliging::kicks, false, "It takes each tick as its chance."),
+                      F::real("whim", &Obliging::whim, "N", 0, 1e3, 0, "Force without consent.", HSP_P_LIVE)};
   }
   void activate(const hsp_activation&, hsp_report&) {}
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
-    out.force[1] = kicks && ++ticks % 2 == 0 ? -wish : wish;
+    out.force[1] = kicks && ++ticks % 2 == 0 ? -wish : wish + whim;
     return HSP_OK;
   }
 };

@@ -218,6 +218,8 @@ TEST(BallProxy, FeelsNothingWhereItBeginsAndDoesNotFit) {
     EXPECT_LE(foot.depth, 0);
     EXPECT_EQ(foot.status, FootStatus::kDegraded);
   }
+  EXPECT_LE(ball.step(wide.foot_at, {0.01, 0, 0}, kRadius).depth, 0) << "it fits 1 mm above the probe";
+  EXPECT_LE(ball.step(wide.foot_at, {0.01, 1.5e-3, 0}, kRadius).depth, 0) << "it fits";
   EXPECT_NEAR(ball.step(wide.foot_at, {0.01, 0, 0}, kRadius).depth, 1e-3, 1e-12);
 }
 

@@ -17,9 +17,10 @@ struct Held {
     world = std::move(*World::build(scene, options, [](int, const std::string&, const std::string&) {}));
   }
   Vector3d tick(const Probe& probe = probeAt(Vector3d::Zero())) { return tickOnce(*world, ticks++, probe); }
-  void set(double value) {
+  void set(double value, uint32_t param = 0) {
     Order order;
     order.kind = Order::Kind::kSet;
+    order.param = param;
     order.value = value;
     ASSERT_TRUE(world->core().apply(order, ticks * 1e-3));
   }
@@ -108,6 +109,17 @@ TEST(LiveParameter, ThatIsSetNowAndThenIsFeltAtOnce) {
     const double wish = i < 300 ? 0 : (i - 300) / 600 % 2 == 0 ? 8 : 1;
     ASSERT_EQ(rests.tick().y(), wish) << i;
   }
+  EXPECT_EQ(rests.trouble(), ShapeFault::kNone);
+}
+
+TEST(LiveParameter, ThatNeedsNoConsentIsFeltSlowly) {
+  constexpr uint32_t kWhim = 2;
+  Held rests(testModel("obliging"));
+  for (int i = 0; i < 300; ++i) rests.tick();
+  rests.set(8, kWhim);
+  EXPECT_NEAR(rests.tick().y(), Claim::kStep, 1e-9);
+  for (int i = 0; i < 100; ++i) rests.tick();
+  EXPECT_EQ(rests.tick().y(), 8);
   EXPECT_EQ(rests.trouble(), ShapeFault::kNone);
 }
 

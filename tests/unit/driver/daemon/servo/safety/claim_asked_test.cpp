@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 /// Sets a parameter, and takes the next step at the origin.
 Vector3d asked(Rested& claim, double force) {
-  claim.claim.expectChange();
+  claim.claim.expectChange(true);
   return claim.next(at({0, 0, 0}, {0, force, 0}));
 }
 Vector3d unasked(Rested& claim, double force) {
@@ -106,9 +106,21 @@ TEST(Claim, WhatWasAskedForExcusesAPluginNoLongerThanItTakes) {
   EXPECT_NEAR(excused, Claim::kExcused / kTick, 2) << "a second at most";
 }
 
+TEST(Claim, AChangeWithoutConsentComesSlowlyAndIsNoFault) {
+  Rested rests;
+  rests.claim.expectChange(false);
+  EXPECT_NEAR(unasked(rests, 8).y(), Claim::kStep, 1e-9);
+  EXPECT_TRUE(rests.held);
+  EXPECT_TRUE(rests.claim.excused());
+  double force = 0;
+  for (int i = 0; i < 80; ++i) force = unasked(rests, 8).y();
+  EXPECT_EQ(force, 8);
+  EXPECT_FALSE(rests.held);
+}
+
 TEST(Claim, AskingDuringABadSampleIsForgottenWithIt) {
   Rested rests;
-  rests.claim.expectChange();
+  rests.claim.expectChange(true);
   ClaimStep bad = at({0, 0, 0}, {0, 0, 0});
   bad.in = HSP_IN_INVALID;
   rests.next(bad);
@@ -124,7 +136,7 @@ TEST(Claim, WhatWasAskedForIsOneChangeOfForceAndTorque) {
   for (int i = 0; i < 5; ++i) {
     ClaimStep step = at({0, 0, 0}, {0, i % 2 == 0 ? 8.0 : -8.0, 0});
     step.torque = {i % 2 == 0 ? 1.0 : -1.0, 0, 0};
-    both.claim.expectChange();
+    both.claim.expectChange(true);
     both.claim.checkTorque(step, both.bounds, kTick, twists);
     both.next(step);
     EXPECT_EQ(both.held, i >= 3) << i;

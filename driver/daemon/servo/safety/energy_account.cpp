@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/energy_account.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::servo {
+
+void EnergyAccount::add(const Eigen::Vector3d& force, const Eigen::Vector3d& position, double depth,
+                        LastPush& last) noexcept HSP_RT {
+  const double stored = force.norm() * std::max(depth, 0.0);
+  // Nobody knows how a probe that jumped came to its depth, so the contact counts as pressed by a hand.
+  given_ += last.known ? (last.force + force).dot(position - last.position) / 2 : -stored;
+  stored_ += stored;
+  last = {force, position, true};
+}
+
+bool EnergyAccount::closeStep(double dt) noexcept HSP_RT {
+  // What friction and damping took cannot be given back, so it must not hide what is given later.
+  given_ = std::max(given_, -stored_);
+  if (given_ > 0) given_ = std::max(0.0, given_ - kMostPower * dt);
+  stored_ = 0;
+  if (!std::isfinite(given_)) given_ = 0;
+  return given_ > kMostGiven;
+}
+
+}  // namespace hapticd::servo

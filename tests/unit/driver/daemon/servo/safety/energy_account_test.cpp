@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/energy_account.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hapticd::servo {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTick = 1e-3;
+
+/// One probe on one surface.
+struct Book {
+  EnergyAccount account;
+  LastPush last;
+  bool step(double x, double force, double depth) {
+    account.add({force, 0, 0}, {x, 0, 0}, depth, last);
+    return account.closeStep(kTick);
+  }
+};
+
+TEST(EnergyAccount, ASpringGivesNothingHoweverFastAHandSaws) {
+  for (const double rate : {1.0, 8.0, 20.0}) {
+    Book book;
+    for (int i = 0; i < 5000; ++i) {
+      const double x = 0.02 * std::cos(2 * M_PI * rate * kTick * i), depth = std::max(0.0, -x);
+      ASSERT_FALSE(book.step(x, 8000 * depth, -x)) << rate;
+      ASSERT_LT(book.account.given(), 0.05) << rate;
+    }
+  }
+}
+
+/// It pushes with 8 N on the way out, and with 2 N on the way in.
+TEST(EnergyAccount, ASurfaceThatPushesMoreOnTheWayOutIsFoundOut) {
+  Book book;
+  double given = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const bool out = i / 50 % 2 == 1;
+    const double x = 1e-3 * (i % 50) * (out ? 1 : -1) - (out ? 0.05 : 0);
+    if (i > 50) given += 1e-3 * (out ? 8 : -2);
+    if (book.step(x, out ? 8 : 2, 1e-3)) {
+      EXPECT_LT(given, 2 * EnergyAccount::kMostGiven);
+      return;
+    }
+  }
+  FAIL();
+}
+
+TEST(EnergyAccount, WhatFrictionTookIsNotGivenBack) {
+  Book book;
+  double x = 0;
+  for (int i = 0; i < 1000; ++i) book.step(x += 1e-3, -8, 1e-3);
+  EXPECT_GE(book.account.given(), -8e-3 - 1e-9) << "8 J of friction";
+  bool found = false;
+  for (int i = 0; i < 50 && !found; ++i) found = book.step(x += 1e-3, 8, 1e-3);
+  EXPECT_TRUE(found);
+}
+
+TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
+  Book book;
+  for (int turn = 0; turn < 20; ++turn) {
+    book.last.known = false;
+    for (int i = 50; i >= 0; --i) ASSERT_FALSE(book.step(-1e-3 * i, 160e-3 * i, 1e-3 * i)) << turn;
+  }
+}
+
+TEST(EnergyAccount, ALittlePowerIsAllowedForever) {
+  Book book;
+  double x = 0;
+  for (int i = 0; i < 100000; ++i) ASSERT_FALSE(book.step(x += 0.9 * EnergyAccount::kMostPower * kTick, 1, 0));
+}
+
+TEST(EnergyAccount, NumbersThatOverflowAreForgotten) {
+  Book book;
+  EXPECT_FALSE(book.step(0, 1e200, 1e200));
+  EXPECT_FALSE(book.step(1e200, 1e200, 1e200));
+  EXPECT_TRUE(std::isfinite(book.account.given()));
+}
+
+}  // namespace
+}  // namespace hapticd::servo
