@@ -28,7 +28,7 @@ Json pathRows(const Json& path) {
     Json row = Json::array({point.at("t")});
     const Json &position = point.at("pose").at("position"), &turn = point.at("pose").at("orientation");
     row.insert(row.end(), position.begin(), position.end());
-    if (turn != Json::array({1.0, 0.0, 0.0, 0.0})) row.insert(row.end(), turn.begin(), turn.end());
+    if (turn.dump() != "[1.0,0.0,0.0,0.0]") row.insert(row.end(), turn.begin(), turn.end());
     rows.push_back(std::move(row));
   }
   return rows;
