@@ -46,10 +46,8 @@ struct ParameterTable {
                  "quaternion w, x, y, z."),
         F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
                    "chain: position of the tip in the frame of the last link."),
-        F::array(
-            "arm.lengths", &T::lengths, "m", 1, 0, 8, -10, 10, "[]",
-            "phantom: l1 l2 l3 l5 l6; default: those of the Premium 1.5. delta: a b c d e f r s; default: those of "
-            "the Falcon."),
+        F::array("arm.lengths", &T::lengths, "m", 1, 0, 8, -10, 10, "[]",
+                 "phantom: l1 l2 l3 l5 l6 (default: Premium 1.5). delta: a b c d e f r s (default: Falcon)."),
         F::array("arm.angles", &T::angles, "rad", 1, 0, 3, -10, 10, "[]",
                  "delta: angles about its axis at which the three arms are mounted; default: those of the Falcon."),
         F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",

@@ -114,12 +114,15 @@ void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
   }
 }
 
-/// Waits for more bytes. @return false if the connection has ended
+/// Waits for more bytes. @return false if the connection has ended, or what comes is no line
 bool Client::receiveMore() {
+  constexpr size_t kMostLine = 64u << 20;  // [bytes] no answer is longer
+
   char buffer[4096];
   std::vector<Descriptor> with;
   const ssize_t got = receiveWith(fd_, buffer, with);
   if (got > 0) take({buffer, static_cast<size_t>(got)}, std::move(with));
+  if (begun_.line.size() > kMostLine) return false;
   return got > 0 || (got < 0 && errno == EINTR);
 }
 
@@ -153,6 +156,7 @@ Result<Reply> Client::answer(double seconds) {
       news_.push_back(std::move(*reply));
       if (news_.size() > kMostNews) news_.pop_front();
     }
+    if (monotonicNow() > end) return Error{"the daemon at " + file_ + " did not answer in time" + kBusy};
   }
 }
 

@@ -22,12 +22,19 @@ constexpr int kLimitMs = 5000;
 constexpr uint32_t kMaxParams = 4096;  ///< a table that claims more is damaged
 constexpr uint32_t kMaxChoices = 4096;
 
+/// Returns a text for people without control characters, because it is written to terminals.
+std::string plainText(const char* text) {
+  std::string plain = textOf(text);
+  std::replace_if(plain.begin(), plain.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return plain;
+}
+
 /// Copies a parameter of any minor version of the ABI. Members that the file does not have stay zero.
 ParamInfo copyParam(const hsp_param& given) {
   hsp_param p{};
   std::memcpy(&p, &given, std::min<size_t>(given.struct_size, sizeof p));
-  ParamInfo info{textOf(p.id), textOf(p.unit), textOf(p.doc), p.kind,      p.flags,     p.min, p.max, p.def,
-                 {},           p.columns,      p.min_count,   p.max_count, std::nullopt};
+  ParamInfo info{textOf(p.id), plainText(p.unit), plainText(p.doc), p.kind,      p.flags,     p.min, p.max, p.def,
+                 {},           p.columns,         p.min_count,      p.max_count, std::nullopt};
   if (p.def_text != nullptr) info.def_text = p.def_text;
   if (p.choices == nullptr || p.choice_count > kMaxChoices) return info;
   for (uint32_t i = 0; i < p.choice_count; ++i) info.choices.emplace_back(textOf(p.choices[i]));
@@ -70,9 +77,9 @@ ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& 
   ClassInfo info{kind,
                  textOf(given.id),
                  textOf(given.name),
-                 textOf(given.version),
-                 textOf(given.license),
-                 textOf(given.doc),
+                 plainText(given.version),
+                 plainText(given.license),
+                 plainText(given.doc),
                  given.flags,
                  minor,
                  {},

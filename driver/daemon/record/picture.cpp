@@ -149,11 +149,12 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
   const auto always = [](const Sample&) { return true; };
   // As in the report, ticks with a fault do not count as contact: the force is zero then, also at the end of a run.
   const auto in_contact = [](const Sample& s) { return s.depth_m > 0 && s.fault == 0; };
+  const auto with_force = [](const Sample& s) { return s.force_n > 0 && s.fault == 0; };  // a program may push, too
   const bool simulated = report.virtual_time;
   std::vector<Quantity> all = {{"penetration depth", "mm", kDepth, [](const Sample& s) { return s.depth_m * 1e3; },
                                 in_contact, "% of the ticks in contact", false, leastDepth(samples)},
-                               {"force on the hand", "N", kForce, [](const Sample& s) { return s.force_n; }, in_contact,
-                                "% of the ticks in contact"},
+                               {"force on the hand", "N", kForce, [](const Sample& s) { return s.force_n; }, with_force,
+                                "% of the ticks with a force"},
                                {simulated ? "compute time" : "lateness", "us", kTime,
                                 [simulated](const Sample& s) { return simulated ? s.compute_us : s.lateness_us; },
                                 always, "% of the ticks", true}};

@@ -84,6 +84,16 @@ Json modelJson(const scene::Model& model) {
           {"parameters", values(model.parameters)}};
 }
 
+/// Reads a point of a path: an object, or a row of numbers as in the description of a model that came later.
+scene::PathPoint toPathPoint(const Json& json) {
+  if (json.is_object()) return {toReal(json.at("t")), toPose(json.at("pose"))};
+  scene::PathPoint point{toReal(json.at(0)), {}};
+  point.pose.position = {toReal(json.at(1)), toReal(json.at(2)), toReal(json.at(3))};
+  if (json.size() > 4)
+    point.pose.orientation = {toReal(json.at(4)), toReal(json.at(5)), toReal(json.at(6)), toReal(json.at(7))};
+  return point;
+}
+
 scene::Model toModel(const Json& json) {
   scene::Model model;
   model.name = json.at("name");
@@ -92,7 +102,7 @@ scene::Model toModel(const Json& json) {
   model.pose = toPose(json.at("pose"));
   model.kinematic = json.at("kinematic");
   model.enabled = json.value("enabled", true);  // older recordings have no models that start disabled
-  for (const Json& point : json.at("path")) model.path.push_back({toReal(point.at("t")), toPose(point.at("pose"))});
+  for (const Json& point : json.at("path")) model.path.push_back(toPathPoint(point));
   model.parameters = toValues(json.at("parameters"));
   return model;
 }

@@ -43,7 +43,7 @@ def example(name, *arguments, without=()):
 
 
 ALONE = """
-import os, sys, warnings
+import mmap, sys, warnings
 sys.modules["numpy"] = None  # as where it is not installed
 import hapticd
 from hapticd._line import _plain
@@ -73,9 +73,7 @@ try:
 except TypeError as error:
     assert "orientation=[w, x, y, z]" in str(error), error
 def lead(kind):
-    fd = os.memfd_create("lead")
-    os.truncate(fd, 4096)
-    return kind(fd, 4096, lambda: None)
+    return kind(mmap.mmap(-1, 4096), lambda: None)
 nan = float("nan")
 for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), (lambda: lead(ForceLead).put(1, [0, 0]), "force [x, y, z] in N"),
                    (lambda: lead(PoseLead).put([nan, 0, 0]), "not finite"), (lambda: lead(PoseLead).put([11, 0, 0]), "farther than 10 m"),

@@ -7,6 +7,7 @@ Usage: lead_a_daemon.py HAPTICD SOURCE     prints one line per case; exit 1 when
 import fcntl
 import json
 import math
+import mmap
 import os
 import signal
 import socket
@@ -134,7 +135,7 @@ def hostile(daemon):
         fd = client._line.descriptor()
         check("the memory cannot be cut", raises(lambda: os.ftruncate(fd, 0)) and raises(lambda: os.ftruncate(fd, 1 << 20)))
         check("nor sealed", raises(lambda: fcntl.fcntl(fd, 1033, 0x0008)))
-        lead = hapticd.PoseLead(os.dup(fd), answer["bytes"], lambda: None)
+        lead = hapticd.PoseLead(mmap.mmap(fd, answer["bytes"]), lambda: None)
         lead.put([0, START[1], 0])
         until(lambda: abs(height(client) - START[1]) < 1e-3)
         first = client.streams["poses"].written

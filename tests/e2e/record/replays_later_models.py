@@ -165,7 +165,10 @@ def whatIsMissing(folder):
 
 def longPath(folder):
     others = files(folder)
-    write(folder, "wall.csv", "t,x,y,z\n" + "".join(f"{i / 100},0,{-0.05 - i / 10000},0\n" for i in range(1000)))
+    path = lambda points: write(folder, "wall.csv", "t,x,y,z\n" + "".join(f"{i / 100},0,{-0.05 - i / 1000000},0\n" for i in range(points)))
+    path(1000)
+    replayed("a path of a thousand points", shortRun(folder, "thousand", others, "wall"), 100)
+    path(10000)
     endsThere("a path that is too long for the recording", shortRun(folder, "long", others, "wall"), "describes it only in part")
 
 

@@ -20,11 +20,26 @@ Json filesJson(const scene::Model& model, const scene::Model& readable) {
   return list;
 }
 
+/// Returns a path as rows [t, x, y, z], with w, x, y, z of the orientation behind them where it is turned: a third of
+/// the text.
+Json pathRows(const Json& path) {
+  Json rows = Json::array();
+  for (const Json& point : path) {
+    Json row = Json::array({point.at("t")});
+    const Json &position = point.at("pose").at("position"), &turn = point.at("pose").at("orientation");
+    row.insert(row.end(), position.begin(), position.end());
+    if (turn.dump() != "[1.0,0.0,0.0,0.0]") row.insert(row.end(), turn.begin(), turn.end());
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string describeModel(const scene::Model& model, const scene::Model& readable, const hsp_class& plugin,
                           size_t most) {
   Json json = document::parseJsonOrThrow(record::modelToJson(model));
+  json["path"] = pathRows(json["path"]);
   json["id"] = plugin.id;
   json["version"] = plugin.version;
   json["files"] = filesJson(model, readable);

@@ -13,7 +13,7 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kMostNumbers = 65536;                ///< a larger number of a model is damage
-constexpr size_t kMostDescription = size_t{1} << 16;  ///< [bytes] the daemon writes at most half of this
+constexpr size_t kMostDescription = size_t{1} << 18;  ///< [bytes] the daemon writes at most half of this
 
 constexpr auto kAdopted = static_cast<uint32_t>(Order::Kind::kAdopt),
                kReleased = static_cast<uint32_t>(Order::Kind::kRelease);

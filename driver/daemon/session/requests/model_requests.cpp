@@ -29,7 +29,7 @@ namespace {
 using control::Request;
 
 /// [bytes] A description of a model has at most kMostMarks rows of this size in the stream `marks`.
-constexpr size_t kMarkBytes = Order::kTextBytes - 1, kMostMarks = 256;
+constexpr size_t kMarkBytes = Order::kTextBytes - 1, kMostMarks = 960;
 
 /// Adds `notes` to the answer: which added models may not be what the user expects, because their plugin's file has
 /// changed since it was loaded.

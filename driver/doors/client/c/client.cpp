@@ -35,6 +35,13 @@ Mapping::Mapping(int fd, size_t bytes, int protection) : bytes_(bytes) {
   if (memory != MAP_FAILED) data_ = static_cast<std::byte*>(memory);
 }
 
+Mapping Mapping::sealed(int fd, size_t bytes, int protection) {
+  const int seals = fcntl(fd, F_GET_SEALS);  // fails for whatever is no memory file
+  if (seals >= 0 && (seals & F_SEAL_SHRINK) != 0) return {fd, bytes, protection};
+  errno = EINVAL;
+  return {};
+}
+
 Mapping::~Mapping() {
   if (data_ != nullptr) munmap(data_, bytes_);
 }
@@ -116,7 +123,7 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
   if (kept.data() != nullptr) return kept.data();
   Answer answer;
   if (!ask(request, answer, nullptr) || !answer.descriptor) return nullptr;
-  hapticd::client::Mapping memory(answer.descriptor.get(), 0, protection);
+  auto memory = hapticd::client::Mapping::sealed(answer.descriptor.get(), 0, protection);
   if (memory.data() == nullptr || memory.bytes() < least) return nullptr;
   kept = std::move(memory);
   return kept.data();

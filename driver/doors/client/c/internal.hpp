@@ -26,6 +26,9 @@ class Mapping {
   Mapping() = default;
   /// Maps a file. After an error, data() is nullptr and errno says why. @param bytes 0 for the whole file
   Mapping(int fd, size_t bytes, int protection);
+  /// Maps memory that a daemon has passed. It must be sealed against shrinking: else this process could be killed while
+  /// it reads.
+  static Mapping sealed(int fd, size_t bytes, int protection);
   Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), bytes_(other.bytes_) {}
   Mapping& operator=(Mapping&& other) noexcept {
     std::swap(data_, other.data_);
@@ -75,6 +78,7 @@ class RowFile {
 
  private:
   Result<void> readStreams();
+  Result<void> readBlocks(uint64_t place);
   Result<void> readAbout();
   Mapping memory_;
   std::string about_;

@@ -15,7 +15,8 @@ using hapticd::client::setError;
 /// Returns why the arm gets no force, as the daemon reports it, or "" if the arm gets the force.
 std::string noForce(const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
-  return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
+  const auto found = json.is_object() ? json.find("no_force") : json.end();
+  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 std::string requestOf(const char* word, const char* what, const char* name) {
@@ -33,7 +34,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
     if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // ends the lead, because it may have begun
     return nullptr;
   }
-  hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
+  auto memory = hapticd::client::Mapping::sealed(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
   if (memory.data() == nullptr) return setError(told, "damaged", "the memory of the lead cannot be mapped"), nullptr;
   auto* lead = new hapticd_lead{client, end, std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);

@@ -47,33 +47,39 @@ Result<RowFile> RowFile::open(const std::string& file) {
 }
 
 Result<void> RowFile::readStreams() {
-  auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
-  if (header == nullptr || std::strncmp(header->magic, record::kRecordingFormat, sizeof header->magic) != 0 ||
-      header->ring != 1 || header->stream_count > record::kMaxStreams)
+  auto* shared = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
+  if (shared == nullptr) return Error{"is not a black box of a daemon of this version"};
+  record::FileHeader header;  // checked and used as it is now: another process may change the memory meanwhile
+  std::memcpy(&header, shared, sizeof header);
+  if (std::strncmp(header.magic, record::kRecordingFormat, sizeof header.magic) != 0 || header.ring != 1 ||
+      header.stream_count > record::kMaxStreams)
     return Error{"is not a black box of a daemon of this version"};
-  const auto* about = reinterpret_cast<const char*>(memory_.at(header->about_address, header->about_bytes));
+  const auto* about = reinterpret_cast<const char*>(memory_.at(header.about_address, header.about_bytes));
   if (about == nullptr) return Error{"ends inside its description: it is incomplete or damaged"};
-  about_.assign(about, header->about_bytes);
-  for (uint32_t i = 0; i < header->stream_count; ++i) {
-    record::StreamHeader& stream = header->streams[i];
+  about_.assign(about, header.about_bytes);
+  for (uint32_t i = 0; i < header.stream_count; ++i) {
+    const record::StreamHeader& stream = header.streams[i];
     if (stream.row_bytes == 0 || stream.row_bytes % 8 != 0 || stream.row_bytes > record::kMaxRowBytes)
       return Error{"has rows of an impossible size: it is damaged"};
     Stream& known = streams_.emplace_back();
     known.name.assign(stream.name, strnlen(stream.name, sizeof stream.name));
-    known.written = &stream.rows;
+    known.written = &shared->streams[i].rows;
     known.row_words = stream.row_bytes / 8;
   }
-  uint64_t place = header->blocks_address;
-  while (const auto* block =
-             reinterpret_cast<const record::BlockHeader*>(memory_.at(place, sizeof(record::BlockHeader)))) {
-    if (block->magic != record::BlockHeader::kMagic) break;
-    std::byte* rows = memory_.at(place + sizeof *block, block->bytes);
-    if (rows == nullptr) break;
-    if (block->stream < streams_.size()) {
-      streams_[block->stream].rows = reinterpret_cast<uint64_t*>(rows);
-      streams_[block->stream].capacity = block->bytes / 8 / streams_[block->stream].row_words;
+  return readBlocks(header.blocks_address);
+}
+
+Result<void> RowFile::readBlocks(uint64_t place) {
+  while (const std::byte* at = memory_.at(place, sizeof(record::BlockHeader))) {
+    record::BlockHeader block;
+    std::memcpy(&block, at, sizeof block);
+    std::byte* rows = memory_.at(place + sizeof block, block.bytes);
+    if (block.magic != record::BlockHeader::kMagic || rows == nullptr || place % 8 != 0) break;
+    if (block.stream < streams_.size()) {
+      streams_[block.stream].rows = reinterpret_cast<uint64_t*>(rows);
+      streams_[block.stream].capacity = block.bytes / 8 / streams_[block.stream].row_words;
     }
-    place += sizeof *block + block->bytes;
+    place += sizeof block + block.bytes;
   }
   const bool whole = std::all_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.capacity >= 2; });
   return whole ? Result<void>() : Result<void>(Error{"has no room for rows: it is damaged"});
@@ -91,7 +97,10 @@ Result<void> RowFile::readAbout() {
       known.doc = kept(stream, column, "doc");
       std::strncpy(known.type, column.at("type").get<std::string>().c_str(), sizeof known.type - 1);
       known.offset = column.at("offset");
-      if (known.offset > stream.row_words * 8 - 4) return Error{"has a column outside its row: it is damaged"};
+      const auto type = record::typeOf(known.type);
+      if (known.offset > stream.row_words * 8 ||
+          (type ? record::bytesOf(*type) : 0) > stream.row_words * 8 - known.offset)
+        return Error{"has a column outside its row: it is damaged"};
       stream.columns.push_back(known);
     }
   }
@@ -108,13 +117,14 @@ uint64_t RowFile::written(const Stream& stream) {
 }
 
 long RowFile::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
-  for (;;) {
+  constexpr int kTries = 1000;  // the writer goes round its ring in seconds
+  for (int i = 0; i < kTries; ++i) {
     const uint64_t end = written(stream), kept = stream.capacity - 1;  // the slot after the newest row is being written
     const uint64_t first = std::min(std::max(row, end > kept ? end - kept : 0), end);
     const uint64_t count = std::min<uint64_t>(most, end - first);
     auto* to = static_cast<std::byte*>(rows);
-    for (uint64_t i = 0; i < count; ++i) {
-      uint64_t* from = stream.rows + (first + i) % stream.capacity * stream.row_words;
+    for (uint64_t n = 0; n < count; ++n) {
+      uint64_t* from = stream.rows + (first + n) % stream.capacity * stream.row_words;
       for (size_t word = 0; word < stream.row_words; ++word, to += 8) {
         const uint64_t value = load(from[word], std::memory_order_acquire);
         std::memcpy(to, &value, 8);
@@ -125,6 +135,7 @@ long RowFile::read(const Stream& stream, uint64_t& row, void* rows, size_t most)
     row = first + count;
     return static_cast<long>(count);
   }
+  return 0;
 }
 
 }  // namespace hapticd::client

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <ctime>
 
 #include "base/clock.hpp"
@@ -84,11 +85,13 @@ bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapti
 
 /// Returns the record of an arm in the memory of `state`, or nullptr if there is none.
 std::byte* recordOf(hapticd_client* client, int device, size_t behind, size_t bytes) {
-  const auto* page = reinterpret_cast<hapticd_state_page*>(
-      client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
-  if (page == nullptr || device < 0 || static_cast<uint32_t>(device) >= page->arms || page->stride < behind + bytes)
+  const std::byte* shared = client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ);
+  if (shared == nullptr) return nullptr;
+  hapticd_state_page page;
+  std::memcpy(&page, shared, sizeof page);
+  if (device < 0 || static_cast<uint32_t>(device) >= page.arms || page.stride < behind + bytes || page.stride % 8 != 0)
     return nullptr;
-  return client->states.at(sizeof *page + size_t{page->stride} * static_cast<uint32_t>(device) + behind, bytes);
+  return client->states.at(sizeof page + size_t{page.stride} * static_cast<uint32_t>(device) + behind, bytes);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ from __future__ import annotations
 import array
 import fcntl
 import math
+import mmap
 import os
 import time
 import warnings
@@ -12,12 +13,12 @@ from typing import Any, Callable, Iterator, Optional, Sequence
 
 from ._error import CLOSED, HapticdError, Named, NoForceWarning, Refused, caller, meant
 from ._folder import runtime_folder
-from ._lead import ForceLead, PoseLead
+from ._lead import LEAD_BYTES, ForceLead, PoseLead
 from ._line import Line
 from ._models import Model
 from ._push import ForceThread
 from ._rows import BlackBox, Stream
-from ._state import Bell, State, StatePage
+from ._state import BELL_BYTES, Bell, State, StatePage
 
 _TAKES_TO_END = 0.5  # s: at most, until a process whose sockets are closed has ended
 
@@ -179,9 +180,11 @@ class Client:
 
     def _answered(self, request: dict[str, Any]) -> dict[str, Any]:
         self._line.say(request)
+        end = time.monotonic() + self.timeout
         while True:
-            answer = self._line.hear(self.timeout)
-            if answer is None:
+            left = end - time.monotonic()
+            answer = self._line.hear(max(left, 0))
+            if answer is None or (left < 0 and answer.get("id") != self._asked):
                 raise HapticdError(f"the daemon did not answer within {self.timeout:g} s; it may hang\n  fix: hapticd ctl status, or connect with a longer timeout", "timeout")
             if answer.get("id") != self._asked:
                 continue  # an answer that came too late, after its request had timed out
@@ -192,7 +195,11 @@ class Client:
     @property
     def models(self) -> dict[str, Model]:
         """The models and their present state, by name."""
-        return Named("model", {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]})
+        answer = self.ask(do="list")
+        try:
+            return Named("model", {facts["name"]: Model(self, facts) for facts in answer["models"]})
+        except (KeyError, TypeError) as error:
+            raise HapticdError(f"the daemon's list of models cannot be understood: {error!r}; it may be of another version", "damaged") from None
 
     def status(self) -> dict[str, Any]:
         """Returns the daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
@@ -235,7 +242,7 @@ class Client:
 
     def _lead(self, target: dict[str, str]) -> PoseLead:
         answer = self._begin(target)
-        return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
+        return PoseLead(self._line.memory(answer, LEAD_BYTES), lambda: self._unlead(target), self._lost_lead)
 
     def _begin(self, target: dict[str, str]) -> dict[str, Any]:
         try:
@@ -254,7 +261,7 @@ class Client:
         answer = self._begin(target)
         if answer.get("no_force"):
             warnings.warn_explicit(answer["no_force"], NoForceWarning, *caller())
-        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead,
+        return ForceLead(self._line.memory(answer, LEAD_BYTES), lambda: self._unlead(target), self._lost_lead,
                          answer.get("max_force", math.inf))
 
     def _lost_lead(self) -> Optional[HapticdError]:
@@ -304,11 +311,11 @@ class Client:
 
     def _state_page(self) -> StatePage:
         answer = self.ask(do="state")
-        return StatePage(self._line.descriptor(), answer["bytes"])
+        return StatePage(self._line.memory(answer, mmap.PAGESIZE, prot=mmap.PROT_READ))
 
     def _bell(self) -> Bell:
         answer = self.ask(do="bell")
-        return Bell(self._line.descriptor(), answer["bytes"])
+        return Bell(self._line.memory(answer, BELL_BYTES))
 
     def _arm(self, device: str) -> int:
         names = [d["name"] for d in self.about["devices"]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Iterable
+from typing import Any, Iterable
 
 
 CLOSED = ("this client is closed, by close() or because its with block has ended"
@@ -28,6 +28,11 @@ class Refused(HapticdError):
 class NoForceWarning(UserWarning):
     """A program pushes on an arm that gets no force (a fault is latched, or somebody holds it), or has enabled a model that
     gives none, because a tip is inside it. The text says what to do."""
+
+
+def known(kind: Any, facts: dict[str, Any]) -> Any:
+    """Makes a dataclass of what the daemon said. A newer daemon may say more."""
+    return kind(**{field: facts[field] for field in kind.__dataclass_fields__})
 
 
 def caller() -> tuple[str, int]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import mmap
-import os
 import struct
 import time
 import warnings
@@ -15,6 +14,7 @@ from ._error import HapticdError
 _TARGET = struct.Struct("<14d")
 _PUSH = struct.Struct("<Q6dQQ")
 _COUNT = struct.Struct("<Q")
+LEAD_BYTES = 4096  # size of the memory of a lead
 
 
 _UNIT = 1e-3  # largest error of a quaternion's length, as in the daemon
@@ -31,11 +31,8 @@ def _finite(what: str, *numbers: float) -> None:
 class _Slot:
     """The memory of a lead: a count, which is odd while the record is being written, and then the record."""
 
-    def __init__(self, fd: int, size: int) -> None:
-        try:
-            self._memory = mmap.mmap(fd, size)
-        finally:
-            os.close(fd)
+    def __init__(self, memory: mmap.mmap) -> None:
+        self._memory = memory
         self._count = _COUNT.unpack_from(self._memory, 0)[0]
 
     def put(self, record: bytes) -> None:
@@ -70,9 +67,9 @@ class Ending:
 class Lead(Ending):
     """A lead of this program. It ends with `end()`, with the client, or at the end of a `with` block."""
 
-    def __init__(self, fd: int, size: int, unlead: Callable[[], Any],
+    def __init__(self, memory: mmap.mmap, unlead: Callable[[], Any],
                  lost: Callable[[], Optional[HapticdError]] = lambda: None) -> None:
-        self._slot: Optional[_Slot] = _Slot(fd, size)
+        self._slot: Optional[_Slot] = _Slot(memory)
         self._unlead = unlead
         self._lost = lost  # returns why the lead has no effect any more, or None
 
@@ -134,9 +131,9 @@ class PoseLead(Lead):
 class ForceLead(Lead):
     """A force on the hand of an arm. 3 ms after the last answer the force ramps out; after 20 ms it is zero."""
 
-    def __init__(self, fd: int, size: int, unlead: Callable[[], Any], lost: Callable[[], Optional[HapticdError]] = lambda: None,
+    def __init__(self, memory: mmap.mmap, unlead: Callable[[], Any], lost: Callable[[], Optional[HapticdError]] = lambda: None,
                  max_force: float = math.inf) -> None:
-        super().__init__(fd, size, unlead, lost)
+        super().__init__(memory, unlead, lost)
         self.max_force = max_force  #: N: largest force that the scene and the device allow this program
         self._warned = False
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import array
+import fcntl
 import json
 import math
+import mmap
 import os
 import select
 import socket
@@ -15,6 +17,7 @@ from typing import Any, Optional
 from ._error import CLOSED, HapticdError
 
 _MOST_LINE = 1 << 24
+_F_GET_SEALS, _F_SEAL_SHRINK = 1034, 2  # the module fcntl has them from Python 3.8 on, but not everywhere
 
 
 def _plain(value: Any) -> Any:
@@ -66,13 +69,19 @@ class Line:
             left = None if end is None else max(end - time.monotonic(), 0)
             ready = select.poll()  # select.select() cannot wait for a descriptor above 1023
             ready.register(self._socket, select.POLLIN)
-            if not ready.poll(None if left is None else math.ceil(left * 1e3)):
-                return None
+            if not ready.poll(None if left is None else math.ceil(left * 1e3)) or (left == 0 and self._begun):
+                return None  # nothing came, or a line without an end
             self._receive()
         line, descriptors = self._lines.popleft()
         self._forget()
         self._descriptors = descriptors
-        return json.loads(line)
+        try:
+            answer = json.loads(line)
+        except (ValueError, RecursionError):
+            answer = None
+        if not isinstance(answer, dict):
+            raise HapticdError(f"the daemon's answer is not a JSON object: {line[:100]!r}; it may be of another version", "damaged")
+        return answer
 
     def _receive(self) -> None:
         try:
@@ -112,6 +121,23 @@ class Line:
         if not self._descriptors:
             raise HapticdError("the daemon sent no shared memory with its answer; it may be of another version\n  fix: restart the daemon", "damaged")
         return self._descriptors.pop(0)
+
+    def memory(self, answer: dict[str, Any], least: int, **how: int) -> mmap.mmap:
+        """Maps the memory that came with the last line, at least so many bytes. It must be sealed against shrinking: else
+        this process could be killed while it reads."""
+        fd = self.descriptor()
+        try:
+            if not fcntl.fcntl(fd, _F_GET_SEALS) & _F_SEAL_SHRINK:
+                raise ValueError("it is not sealed")
+            memory = mmap.mmap(fd, answer.get("bytes", 0), **how)
+            if len(memory) < least:
+                raise ValueError(f"it has {len(memory)} bytes, expected {least}")
+            return memory
+        except (OSError, ValueError, TypeError, OverflowError) as error:
+            raise HapticdError(f"the shared memory that the daemon sent cannot be used: {error}; it may be of another version\n"
+                               "  fix: restart the daemon", "damaged") from None
+        finally:
+            os.close(fd)
 
     def _forget(self) -> None:
         for fd in self._descriptors:

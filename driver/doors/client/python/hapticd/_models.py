@@ -7,7 +7,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Sequence
 
-from ._error import Named, NoForceWarning, caller
+from ._error import Named, NoForceWarning, caller, known
 
 if TYPE_CHECKING:
     from ._client import Client
@@ -42,7 +42,7 @@ class Model:
         self.position: list[float] = facts["pose"]["position"]  #: m, world frame
         self.orientation: list[float] = facts["pose"]["orientation"]  #: w, x, y, z
         self.parameters: dict[str, Parameter] = Named(
-            "live parameter", {p["id"]: Parameter(**p) for p in facts.get("live_parameters", [])})
+            "live parameter", {p["id"]: known(Parameter, p) for p in facts.get("live_parameters", [])})
 
     def __repr__(self) -> str:
         return f"<hapticd model {self.name!r} of {self.plugin}>"

@@ -10,7 +10,7 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from ._error import CLOSED, HapticdError, Named
+from ._error import CLOSED, HapticdError, Named, known
 
 try:
     import numpy
@@ -26,6 +26,7 @@ _BLOCK = struct.Struct("<IIQ")
 _BLOCK_MAGIC = 0x4B4C4248
 _INDEX_NODE = 0xFFFFFFFF
 _CODES = {"f8": "d", "f4": "f", "u8": "Q", "u4": "I", "i4": "i"}
+_TRIES = 1000  # the writer goes round its ring in seconds
 _TEXT = "s"  # s96: UTF-8, filled up with zeros to 96 bytes
 
 
@@ -57,6 +58,12 @@ class Column:
     offset: int
     unit: str
     doc: str
+
+    def fits(self, row_bytes: int) -> bool:
+        """Tells whether this package can read it: it is in the row, and has a type that is known."""
+        texts = self.type.startswith(_TEXT) and self.type[len(_TEXT):].isdigit()
+        size = int(self.type[len(_TEXT):]) if texts else struct.calcsize("<" + _CODES[self.type]) if self.type in _CODES else row_bytes + 1
+        return 0 <= self.offset <= row_bytes - size
 
 
 class Row(tuple):
@@ -107,13 +114,14 @@ class Stream:
         first, most = _whole("first", first), None if most is None else _whole("most", most)
         if first < 0 or (most is not None and most < 0):
             raise ValueError(f"rows are counted from 0: read({first}, {most}); the newest n are last(n)")
-        while True:
+        for _ in range(_TRIES):
             written = self.written
             first = min(self._kept(first, written), written)
             count = written - first if most is None else min(most, written - first)
             data = self._copy(first, count)
             if self._kept(first, self.written) == first:
                 return first, self._parsed(data, count)
+        return first, self._parsed(bytearray(), 0)
 
     def last(self, count: int) -> Any:
         """Returns the newest rows, oldest first."""
@@ -152,11 +160,18 @@ class BlackBox:
             raise HapticdError(f"{file}: the black box cannot be mapped into memory: {error}", "damaged") from None
         finally:
             os.close(fd)
-        if len(self._memory) < 4096:
-            raise HapticdError(f"{file}: the file is too short for a black box; the daemon may still be starting", "damaged")
+        try:
+            self._read()
+        except (struct.error, ValueError, KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
+            raise HapticdError(f"{file}: the black box cannot be understood ({error!r}); its daemon may be of another version, or still starting",
+                               "damaged") from None
+        except HapticdError as error:
+            raise HapticdError(f"{file}: {error}", "damaged") from None
+
+    def _read(self) -> None:
         magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
         if not magic.startswith(b"hapticd-recording/1") or not ring:
-            raise HapticdError(f"{file}: is not a black box that this version of the package can read", "damaged")
+            raise HapticdError("is not a black box that this version of the package can read", "damaged")
         self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
         places = self._rows_of(blocks_at, count)
         self.streams: dict[str, Stream] = Named("stream")
@@ -164,18 +179,22 @@ class BlackBox:
             name, row_bytes, capacity, _, _ = _STREAM.unpack_from(
                 self._memory, _HEADER_AT + _HEADER.size + number * _STREAM.size)
             text = name.rstrip(b"\0").decode()
-            columns = [Column(**column) for column in self.about["columns"][text]]
-            self.streams[text] = Stream(self._memory, number, text, row_bytes, capacity, places[number], columns)
+            columns = [known(Column, column) for column in self.about["columns"][text]]
+            at, size = places[number]
+            if capacity < 2 or row_bytes < 1 or size < capacity * row_bytes:
+                raise HapticdError("the black box is damaged: it has no room for its rows", "damaged")
+            self.streams[text] = Stream(self._memory, number, text, row_bytes, capacity, at,
+                                        [column for column in columns if column.fits(row_bytes)])
 
-    def _rows_of(self, at: int, count: int) -> dict[int, int]:
-        places: dict[int, int] = {}
+    def _rows_of(self, at: int, count: int) -> dict[int, tuple[int, int]]:
+        places: dict[int, tuple[int, int]] = {}
         while len(places) < count and at + _BLOCK.size <= len(self._memory):
             magic, stream, size = _BLOCK.unpack_from(self._memory, at)
             if magic != _BLOCK_MAGIC:
                 break
             at += _BLOCK.size
             if stream != _INDEX_NODE:
-                places[stream] = at
+                places[stream] = at, min(size, len(self._memory) - at)
             at += size
         if len(places) < count:
             raise HapticdError("the black box is damaged: it lacks the rows of a stream", "damaged")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import mmap
-import os
 import platform
 import struct
 from typing import NamedTuple, Optional
@@ -13,6 +12,7 @@ from ._error import HapticdError
 
 _PAGE = struct.Struct("<II")
 _FIRST = 64
+BELL_BYTES = 128
 _COUNT = struct.Struct("<Q")
 _STATE = struct.Struct("<QQdd3d4d3d16d3dIIII")
 _FUTEX_WAIT = 0
@@ -50,12 +50,12 @@ class State(NamedTuple):
 class StatePage:
     """The memory with the states of the arms, which the servo writes once per tick."""
 
-    def __init__(self, fd: int, size: int) -> None:
-        try:
-            self._memory = mmap.mmap(fd, size, prot=mmap.PROT_READ)
-        finally:
-            os.close(fd)
+    def __init__(self, memory: mmap.mmap) -> None:
+        self._memory = memory
         self.arms, self._stride = _PAGE.unpack_from(self._memory, 0)
+        if self._stride < 8 + _STATE.size or _FIRST + self.arms * self._stride > len(memory):
+            raise HapticdError("the states that the daemon sent are not those of its arms; it may be of another version\n"
+                               "  fix: restart the daemon", "damaged")
 
     def read(self, arm: int) -> Optional[State]:
         """Returns the newest record, or None if there was none yet."""
@@ -79,11 +79,8 @@ class StatePage:
 class Bell:
     """The memory with the words that the servo counts up. The servo wakes programs that wait for a word to change."""
 
-    def __init__(self, fd: int, size: int) -> None:
-        try:
-            self._memory = mmap.mmap(fd, size)
-        finally:
-            os.close(fd)
+    def __init__(self, memory: mmap.mmap) -> None:
+        self._memory = memory
         self._number = _FUTEX.get(platform.machine())
         if self._number is None:
             raise HapticdError(f"this package cannot wait for ticks on {platform.machine()}\n  fix: read the rows from time to time instead")

@@ -12,6 +12,7 @@ const kDelta = {lengths: [0.06, 0.1025, 0.01443, 0.01125, 0.01125, -0.025, 0.04,
 const kFar = 0.0005; // m: if the computed tip is farther from the recorded one, the mechanism is another one
 const kFarBehind = 0.03; // m: same with compliance control, where the rows hold the virtual mass that the arm follows
 const kSamples = 4000; // number of poses from which the box of the workspace is computed
+const kPlaces = 40000; // number of places about a delta from which it is computed; it reaches few of them
 
 const vector = (list) => new Vector3(...(list ?? [0, 0, 0]));
 
@@ -181,18 +182,20 @@ export class ArmModel {
     const min = new Vector3(Infinity, Infinity, Infinity), max = min.clone().negate();
     let seed = 1;
     const chance = () => (seed = seed * 48271 % 0x7fffffff) / 0x7fffffff;
-    const take = (tip) => { min.min(tip.applyMatrix4(this.mount)), max.max(tip); };
-    for (let sample = 0; sample < kSamples; ++sample) {
-      if (this.mechanism.reach) {
-        const tip = this.mechanism.reach(chance, low, high);
-        if (tip) take(tip);
-        continue;
-      }
-      // The tip is farthest out when joints are at their limits, so half of the joints are placed at a limit.
-      const q = Array.from({length: count}, (_, i) => Number(low[i]) + (Number(high[i]) - Number(low[i])) * (chance() < 0.5 ? Math.round(chance()) : chance()));
-      if (!q.every(Number.isFinite) || (this.mechanism.allowed && !this.mechanism.allowed(q))) continue;
-      take(this.mechanism.tip(q));
+    for (let sample = 0; sample < (this.mechanism.reach ? kPlaces : kSamples); ++sample) {
+      const tip = this.mechanism.reach ? this.mechanism.reach(chance, low, high) : this.#tipOf(chance, low, high);
+      if (!tip) continue;
+      tip.applyMatrix4(this.mount);
+      min.min(tip), max.max(tip);
     }
     return min.x < max.x ? {min, max} : null;
+  }
+
+  /** Returns the tip in a pose by chance, or null if the arm cannot have it. The tip is farthest out when joints are at
+   * their limits, so half of the joints are placed at a limit. */
+  #tipOf(chance, low, high) {
+    const between = (i) => Number(low[i]) + (Number(high[i]) - Number(low[i])) * (chance() < 0.5 ? Math.round(chance()) : chance());
+    const q = Array.from({length: this.info.joint_count}, (_, i) => between(i));
+    return q.every(Number.isFinite) && this.mechanism.allowed?.(q) !== false ? this.mechanism.tip(q) : null;
   }
 }

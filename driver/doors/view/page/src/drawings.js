@@ -4,7 +4,8 @@
 
 /** Returns how a model is named in a request. Another model may get its name when it has left; `since` tells them apart. */
 const keyOf = ({name, since = 0}) => `${since}/${name}`;
-const isThere = ({since, until}, tick) => (since ?? 0) <= Math.max(tick, 0) && tick < (until ?? Infinity);
+/** Tells whether a model is there. A running daemon lists only those that are, and its newest rows may not have come yet. */
+const isThere = (model, tick) => !('until' in model) || (model.since <= Math.max(tick, 0) && tick < (model.until ?? Infinity));
 const ballOf = ({tip_radius: radius, parameters}) => radius ?? parameters?.find((p) => p.id === 'tip_radius')?.number ?? 0;
 
 export class Drawings {

@@ -357,7 +357,9 @@ class Page {
   }
 
   nextArm() {
-    if (this.hand?.possible) this.notice(`The keys move ${this.hand.next()}`, true);
+    if (!this.hand?.possible) return;
+    this.notice(`The keys move ${this.hand.next()}`, true);
+    this.view.canvas.focus({preventScroll: true}); // it takes the arrows
   }
 
   look(name) {

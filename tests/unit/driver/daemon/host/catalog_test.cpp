@@ -111,6 +111,8 @@ TEST(Catalog, ReadsAParameterTableOfASmallerMinorVersion) {
   EXPECT_EQ((*found)->params[1].id, "unused");
   EXPECT_EQ((*found)->params[1].def, 3);
   EXPECT_FALSE((*found)->params[0].def_text.has_value());
+  EXPECT_EQ((*found)->doc, "An old  [2Jplugin.") << "control characters would reach the terminal";
+  EXPECT_EQ((*found)->params[0].doc, "The depth that it reports.");
 }
 
 /// A folder with a plugin that can be replaced, as an installation or a rebuild does it.

@@ -383,6 +383,9 @@ TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
   svg = read(file("run.svg"));
   EXPECT_TRUE(tells(svg, "no model was near enough to be traced"));
   EXPECT_FALSE(tells(svg, "1e-0")) << "an axis of nothing but zeros";
+  for (size_t i = 0; i < 600; ++i) samples[i].force_n = 2;
+  ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
+  EXPECT_TRUE(tells(read(file("run.svg")), "distribution of 600 ticks")) << "the forces of programs without a model";
 }
 
 TEST_F(Report, SaysWhenThereIsNothingToDraw) {

@@ -50,7 +50,7 @@ struct old_param {
   uint32_t columns, min_count, max_count, reserved;
 };
 static const struct old_param kParams[2] = {
-    {sizeof(struct old_param), HSP_REAL, 0, 0, "depth", "m", "The depth that it reports.", 0, 1, 0, 0, 0, 0, 0, 0},
+    {sizeof(struct old_param), HSP_REAL, 0, 0, "depth", "m", "The depth\tthat it reports.", 0, 1, 0, 0, 0, 0, 0, 0},
     {sizeof(struct old_param), HSP_INT, 0, 0, "unused", "", "Never used.", 0, 9, 3, 0, 0, 0, 0, 0}};
 struct old_class {
   uint32_t struct_size, param_count, flags, reserved;
@@ -73,7 +73,7 @@ static const struct old_class kClass = {sizeof(struct old_class),
                                         "small_minor",
                                         "1",
                                         "MIT",
-                                        "An old plugin.",
+                                        "An old\n\x1b[2Jplugin.",
                                         kParams,
                                         create,
                                         destroy,

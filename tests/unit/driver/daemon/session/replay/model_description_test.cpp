@@ -53,7 +53,9 @@ class ModelDescriptionTest : public testing::Test {
 };
 
 TEST_F(ModelDescriptionTest, GivesTheModelAndTheContentOfItsFiles) {
-  const scene::Model named = modelOnPath("name of the asking program", 3);
+  scene::Model named = modelOnPath("name of the asking program", 3);
+  named.path[1].pose.orientation = {0.6, 0, -0.8, 1.0 / 3};
+  named.path[2].pose.orientation = {1, -0.0, 0, 0};
   const std::string text = describeModel(named, modelOnPath(file_, 3), pluginOf("1.1"), kRoom);
   EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c < 127; })) << text;
   const auto read = readModelDescription(text);
