@@ -171,7 +171,6 @@ std::optional<Problem> wrongPair(const std::string& text, const std::string& fil
   return std::nullopt;
 }
 
-/// Returns the offset of a place in the text.
 size_t offsetOf(const std::string& text, const Place& place) {
   size_t start = 0;
   for (int line = 1; line < place.line && start != std::string::npos; ++line) {

@@ -28,6 +28,21 @@ bool hasHopped(const SkeletonFoot& foot, const Vector3d& center, const Vector3d&
   return (foot.center - center).norm() > kHop * foot.radius + kSweep * moved.norm();
 }
 
+/// Writes a foot and the surface that is felt there to the contact record for the host.
+void writeContact(const SkeletonFoot& foot, const Felt& surface, hsp_contact& contact) noexcept HSP_RT {
+  Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * surface.normal;
+  Eigen::Map<Vector3d>(contact.normal) = surface.normal;
+  contact.depth_m = surface.depth;
+  contact.feature = foot.element;
+  contact.param[0] = foot.u;
+  contact.param[1] = foot.v;
+  contact.residual_m = foot.residual;
+  contact.iterations = static_cast<uint32_t>(foot.evaluations);
+  contact.flags = HSP_OUT_TRACED;
+  if (foot.rim) contact.flags |= HSP_OUT_EDGE;
+  if (surface.depth > 0) contact.flags |= HSP_OUT_CONTACT;
+}
+
 }  // namespace
 
 MatDeformable::Dynamics MatDeformable::dynamicsOf(const MedialFile& file) const {
@@ -263,17 +278,7 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
   track.last = p;
   const SkeletonFoot& foot = track.foot;
   const Felt surface = feltInCrease(body_->felt(p, moved, track), track, crease_);
-  Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * surface.normal;
-  Eigen::Map<Vector3d>(contact.normal) = surface.normal;
-  contact.depth_m = surface.depth;
-  contact.feature = foot.element;
-  contact.param[0] = foot.u;
-  contact.param[1] = foot.v;
-  contact.residual_m = foot.residual;
-  contact.iterations = static_cast<uint32_t>(foot.evaluations);
-  contact.flags = HSP_OUT_TRACED;
-  if (foot.rim) contact.flags |= HSP_OUT_EDGE;
-  if (surface.depth > 0) contact.flags |= HSP_OUT_CONTACT;
+  writeContact(foot, surface, contact);
   return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface, put ? Vector3d(Vector3d::Zero()) : moved};
 }
 

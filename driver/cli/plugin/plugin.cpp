@@ -18,7 +18,6 @@ using Json = nlohmann::ordered_json;
 
 const std::string kInQuarantine = "IN QUARANTINE: ";
 
-/// Returns the note for a plugin in quarantine.
 std::string noteOf(const watch::QuarantinedPlugin& entry) {
   const auto found = catalog().shape(entry.plugin);
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))

@@ -192,6 +192,16 @@ document::Problems readProblems(host::Unpacker& in) {
   }
 }
 
+/// Lets all models answer the tips once, if there are any.
+void tickOnce(servo::World& world, const std::vector<servo::Probe>& tips) {
+  if (tips.empty()) return;
+  servo::Lockstep lockstep = world.lockstep();
+  const StepWatch watch;
+  world.core().publish(0, tips);
+  lockstep.before(0);
+  world.core().tick(0, 0, tips);
+}
+
 std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<bool>& strays, bool all_models) {
   std::vector<Hand> hands;
   std::vector<servo::Probe> tips;
@@ -207,13 +217,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   if (!world) return found.take();
   const bool placed = !tips.empty() && tips.size() == scene.devices.size();
   servo::Core& core = (*world)->core();
-  servo::Lockstep lockstep = (*world)->lockstep();
-  if (!tips.empty()) {
-    const StepWatch watch;
-    core.publish(0, tips);
-    lockstep.before(0);
-    core.tick(0, 0, tips);
-  }
+  tickOnce(**world, tips);
   document::Problems warnings;
   const std::vector<InsideTip> inside =
       tips.empty() ? std::vector<InsideTip>{} : tipsInside(scene, **world, core, hands);

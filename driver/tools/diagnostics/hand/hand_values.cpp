@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kThousandth = 1e-3;
 
-/// The values of one hand.
 class HandValues {
  public:
   HandValues(const scene::Scene& scene, const scene::Device& device, const UnreadKeys& unread,

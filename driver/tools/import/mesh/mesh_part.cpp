@@ -61,7 +61,6 @@ std::uint32_t addBody(const RepairedMesh& mesh, bool closed, const MeshOptions& 
   return static_cast<std::uint32_t>(part.bodies.size() - 1);
 }
 
-/// Adds an instance with its name.
 void addInstance(const std::string& name, std::uint32_t body, std::uint32_t parent, brep::Part& part) {
   brep::Instance instance;
   instance.body = body;

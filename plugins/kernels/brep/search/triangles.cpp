@@ -70,7 +70,6 @@ class Bounds {
   int count_;
 };
 
-/// Returns the corners of a triangle.
 std::array<Vector3d, 3> cornersOf(const Part& part, Element triangle) noexcept {
   const auto& corner = part.triangles[triangle.index()].corner;
   return {vec(part.points[corner[0]]), vec(part.points[corner[1]]), vec(part.points[corner[2]])};

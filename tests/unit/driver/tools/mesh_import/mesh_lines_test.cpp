@@ -14,7 +14,6 @@ std::string errorIn(const Result<MeshFile>& mesh) {
   return mesh ? "" : mesh.error();
 }
 
-/// The lines of an error.
 std::vector<std::string> linesOf(const std::string& error) {
   std::vector<std::string> lines;
   std::istringstream in(error);
