@@ -68,14 +68,4 @@ inline int sortChildrenAtOnce(const BoxNode& node, const Float4& bounds, double 
   return countOf(within);
 }
 
-/// Returns true if a row of triangles or an element is farther than `limit` by its own shape. `bound` is raised to the
-/// bound of this shape; if that is farther, `beyond` is lowered to it.
-template <class Shape>
-inline bool isFarther(const Shape& shape, const BoxProbe& probe, double limit, double& bound, double& beyond) noexcept {
-  bound = std::max(bound, static_cast<double>(rowDistance(shape, probe)));
-  if (!(bound > limit)) return false;
-  beyond = std::min(beyond, bound);
-  return true;
-}
-
 }  // namespace hapticd::brep

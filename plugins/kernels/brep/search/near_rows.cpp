@@ -4,10 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 #include "kernels/brep/search/descent.hpp"
 
 namespace hapticd::brep {
+namespace {
+
+/// Returns the number of the shape of a row of the tree: that of its disc, or of the box of its first element.
+template <class Shape>
+inline std::int32_t shapeOf(const BoxNode& node, std::size_t child) noexcept {
+  if constexpr (std::is_same_v<Shape, RowDisc>) return node.row[child];
+  return static_cast<std::int32_t>(BoxTree::rowOf(node.child[child]).first);
+}
+
+}  // namespace
 
 /// Adds up to four candidates to the rows, from number `first` on.
 template <class Choice>
@@ -28,7 +40,7 @@ void NearRows<Choice>::add(const BodyTree& body, int first) noexcept {
 /// Adds the listed shapes that are within reach to the candidates, four at once. Returns false if there are too many.
 template <class Choice>
 bool NearRows<Choice>::considerListed(const BodyTree& body, const BoxProbe& probe, double reach2,
-                                     double& beyond2) noexcept {
+                                      double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
   Float4 beyond = kEndless4;
   const std::vector<Shape>& shapes = body.template shapes<Shape>();
@@ -88,9 +100,7 @@ bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, do
       for (std::size_t i = 0; i < 4; ++i) {
         const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
         nodes[static_cast<std::size_t>(count)] = child;
-        const auto shape = std::is_same_v<Shape, RowDisc> ? open[k]->row[i]
-                                                          : static_cast<std::int32_t>(BoxTree::rowOf(child).first);
-        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], shape, child};
+        listed_[static_cast<std::size_t>(rows)] = {bounds[k][i], shapeOf<Shape>(*open[k], i), child};
         count -= within[k][i] & ~is_row;
         rows -= within[k][i] & is_row;
       }

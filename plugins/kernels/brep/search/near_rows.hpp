@@ -20,8 +20,8 @@ struct ElementLimits {
   static constexpr int kOpenAtOnce = 2;        ///< nodes that gather() opens at once
   static constexpr int kMostListed = 80;       ///< most shapes that gather() measures
   static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
-  /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
-  static constexpr double kWorthIt = 1.5;
+  /// Rows are gathered for several ticks only if the reach is at least this many times the probe's motion per tick.
+  static constexpr double kWorthIt = 1;
   /// Measured distances are kept, because they bound a row more closely than its shape does.
   static constexpr bool kLearns = true;
 };

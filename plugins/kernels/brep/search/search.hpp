@@ -127,6 +127,8 @@ class Search {
   template <class Near>
   bool examineNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   void examineTriangles(const Descent& at, const DescentEntry& entry, Run& run) noexcept;
+  template <class Take>
+  static void measureElements(const Descent& at, const ElementRow& row, const Take& take) noexcept;
   void examineElements(const Descent& at, const DescentEntry& entry, Run& run) noexcept;
   void searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Eigen::Vector3d& p,
                   Run& run) noexcept;

@@ -24,13 +24,30 @@ bool isSpent(const Nearest& best, const SearchBudget& budget) noexcept {
 
 /// Examines a row of triangles, if its disc is near enough.
 void Search::examineTriangles(const Descent& at, const DescentEntry& entry, Run& run) noexcept {
-  auto bound = static_cast<double>(entry.bound);
   const RowDisc& disc = at.body.discs[static_cast<std::size_t>(entry.row)];
-  if (isFarther(disc, at.probe, run.within2(), bound, run.others2)) return;
+  const auto bound = static_cast<double>(std::max(entry.bound, rowDistance(disc, at.probe)));
+  if (bound > run.within2()) {
+    run.others2 = std::min(run.others2, bound);
+    return;
+  }
   const ElementRow row = BoxTree::rowOf(entry.child);
   for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
     if (const Element element = at.body.elements[i]; !(element == at.first))
       examineTriangle(at.place, element, at.p, run);
+}
+
+/// Measures the boxes of the elements of a row, four at once. @param take called with the place of each element and the
+/// lower bound of its squared distance [m^2]
+template <class Take>
+void Search::measureElements(const Descent& at, const ElementRow& row, const Take& take) noexcept {
+  const std::uint32_t end = row.first + row.count;
+  const auto placeOf = [&](std::uint32_t i) { return at.of_face != nullptr ? at.of_face[i] : i; };
+  const auto box = [&](std::uint32_t i) -> const RowBox& { return at.body.rows[placeOf(std::min(i, end - 1))]; };
+  if (row.count == 1) return take(placeOf(row.first), rowDistance(box(row.first), at.probe));
+  for (std::uint32_t i = row.first; i < end; i += 4) {
+    const Float4 bounds = rowDistances(fourOf(box(i), box(i + 1), box(i + 2), box(i + 3)), at.probe);
+    for (std::uint32_t k = 0; k < 4 && i + k < end; ++k) take(placeOf(i + k), bounds[static_cast<int>(k)]);
+  }
 }
 
 /// Examines those elements of a row whose own boxes are near enough, the nearest box first.
@@ -41,11 +58,8 @@ void Search::examineElements(const Descent& at, const DescentEntry& entry, Run& 
   };
   std::array<Candidate, BoxTree::kMaxRow> near;
   std::size_t count = 0;
-  const ElementRow row = BoxTree::rowOf(entry.child);
-  const std::uint32_t end = row.first + row.count;
-  const auto placeOf = [&](std::uint32_t i) { return at.of_face != nullptr ? at.of_face[i] : i; };
-  const auto consider = [&](std::uint32_t place, float box) {
-    const auto bound = static_cast<double>(std::max(entry.bound, box));
+  measureElements(at, BoxTree::rowOf(entry.child), [&](std::uint32_t place, float own) {
+    const auto bound = static_cast<double>(std::max(entry.bound, own));
     if (bound > run.within2()) {
       run.others2 = std::min(run.others2, bound);
       return;
@@ -53,17 +67,7 @@ void Search::examineElements(const Descent& at, const DescentEntry& entry, Run& 
     std::size_t k = count++;
     for (; k > 0 && near[k - 1].bound > bound; --k) near[k] = near[k - 1];
     near[k] = {bound, place};
-  };
-  if (row.count == 1) {
-    const std::uint32_t place = placeOf(row.first);
-    consider(place, rowDistance(at.body.rows[place], at.probe));
-  } else {
-    for (std::uint32_t i = row.first; i < end; i += 4) {
-      const auto box = [&](std::uint32_t k) -> const RowBox& { return at.body.rows[placeOf(std::min(i + k, end - 1))]; };
-      const Float4 boxes = rowDistances(fourOf(box(0), box(1), box(2), box(3)), at.probe);
-      for (std::uint32_t k = 0; k < 4 && i + k < end; ++k) consider(placeOf(i + k), boxes[k]);
-    }
-  }
+  });
   for (std::size_t k = 0; k < count; ++k) {
     const auto [bound, place] = near[k];
     const Element element = at.body.elements[place];
