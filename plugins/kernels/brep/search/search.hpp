@@ -43,7 +43,7 @@ class Search {
   /// [main] Allocates everything that searching needs.
   explicit Search(const Model& model);
 
-  /// [rt] Returns the nearest point of all placements to p (model frame).
+  /// [rt] Returns the nearest point of all placements to p (model frame), which must be finite: see Tracer.
   const Nearest& nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
   /// [rt] Returns the nearest point of one placement, starting from `start`. @param face only this face (index in the
   /// part) and its edges are searched; kNone for all faces
