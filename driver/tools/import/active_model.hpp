@@ -9,6 +9,7 @@
 #include "base/result.hpp"
 #include "host/catalog.hpp"
 #include "host/shape_instance.hpp"
+#include "import/triangles.hpp"
 
 namespace hapticd::importing {
 
@@ -20,5 +21,8 @@ Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const
 
 /// [main] Returns the contact of a resting probe that was placed at `p` [m], in the model's frame.
 Result<hsp_contact> touched(host::ShapeInstance& body, const Eigen::Vector3d& p);
+
+/// [main] Returns the triangles of a model as it is drawn. @param share largest error, as a share of the model's size
+Result<Triangles> tessellated(host::ShapeInstance& shape, double share);
 
 }  // namespace hapticd::importing

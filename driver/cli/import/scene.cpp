@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "cli/import/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "base/file_ending.hpp"
+#include "base/regular_file.hpp"
+#include "base/short_number.hpp"
+#include "cli/support/command.hpp"
+#include "cli/support/output_file.hpp"
+#include "document/json_text.hpp"
+#include "import/active_model.hpp"
+#include "import/press_place.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/limit.hpp"
+#include "kernels/part/names.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using importing::PressPlace;
+
+const Vector3d kRest(0, 0, 0.09);    ///< [m] where the simulated arm holds its tip in the world
+constexpr double kBeforeTip = 0.04;  ///< [m] distance from there to the model
+constexpr double kLarge = 0.5;       ///< [m] of a larger model the arm reaches only a part
+constexpr double kSmall = 0.005;     ///< [m] a smaller model is hard to find with the tip
+constexpr double kFitting = 0.15;    ///< [m] size of a model that is felt well
+constexpr double kPress = 0.004;     ///< [m] how far the hand presses: with about 1 N, which the motors can hold
+constexpr double kOffMiddle = 0.15;  ///< [m] the place that is pressed is at most so far beside the tip
+
+/// What the scene says of a part. A model file has none of it.
+struct PartFacts {
+  bool open = false;
+  std::vector<std::string> instances;  ///< the paths of those that have a body
+};
+
+Result<PartFacts> factsOf(const std::string& file) {
+  PartFacts facts;
+  if (endingOf(file) != ".hpart") return facts;
+  const auto bytes = readRegular(file, brep::kMostPartBytes);
+  if (!bytes) return Error{file + ": " + bytes.error()};
+  try {
+    const brep::Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
+    for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
+      if (part.instances[i].body == brep::kNone) continue;
+      const brep::Body& body = part.bodies[part.instances[i].body];
+      facts.open = facts.open || body.kind == brep::BodyKind::kShell || (body.flags & brep::kClosed) == 0;
+      facts.instances.push_back(brep::instancePath(part, i));
+    }
+  } catch (const brep::PartError& error) {
+    return Error{error.what()};
+  }
+  return facts;
+}
+
+/// Returns a text as YAML takes it, in quotes if it has characters that mean something there.
+std::string yamlText(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./", c) != nullptr || c >= 0x80; };
+  const bool all = !text.empty() && text[0] != '-' && std::all_of(text.begin(), text.end(), plain);
+  return all ? text : document::jsonLine(text);
+}
+
+/// Returns a name for the model: programs and `ctl` need one without spaces and signs.
+std::string modelName(const std::string& file) {
+  std::string name = fs::path(file).stem().string();
+  for (char& c : name)
+    if (const auto byte = static_cast<unsigned char>(c); !std::isalnum(byte) && c != '-' && byte < 0x80) c = '_';
+  return name == "null" || name == "Null" || name == "NULL" ? "model" : name;
+}
+
+/// Returns the path of a file as the scene names it: relative to the scene, if they share more than the root folder.
+std::string pathFrom(const std::string& scene, const fs::path& file) {
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(scene), error).parent_path();
+  const fs::path target = fs::weakly_canonical(fs::absolute(file), error);
+  const fs::path relative = target.lexically_relative(folder);
+  const auto first = [](const fs::path& path) { return *std::next(path.begin()); };
+  const bool below = *relative.begin() != "..";
+  return below || (folder.has_relative_path() && first(folder) == first(target)) ? relative.string() : target.string();
+}
+
+/// [m] Returns a vector as YAML, rounded to the micrometre, which no hand feels.
+std::string listOf(const Vector3d& v) {
+  const auto rounded = [](double x) { return withDigits(std::round(1e6 * x) * 1e-6 + 0.0, 9); };
+  return "[" + rounded(v.x()) + ", " + rounded(v.y()) + ", " + rounded(v.z()) + "]";
+}
+
+std::string sizeText(const Vector3d& size) {
+  const bool large = size.maxCoeff() >= 1;
+  const auto in = [large](double length) { return shortNumber(large ? length : 1e3 * length); };
+  return in(size.x()) + " x " + in(size.y()) + " x " + in(size.z()) + (large ? " m" : " mm");
+}
+
+/// The place of the model in the world: the side that is pressed before the resting tip.
+Vector3d positionOf(const PressPlace& place) {
+  Vector3d aside = place.point - place.middleOfSide();
+  aside *= std::max(0.0, 1 - kOffMiddle / std::max(aside.norm(), 1e-9));
+  return kRest - kBeforeTip * place.normal - place.middleOfSide() - aside;
+}
+
+std::string handLines(const PressPlace& place, const Vector3d& position) {
+  const double thick = (place.point - place.box.min()).dot(place.normal);
+  constexpr double kFlat = 1e-6;  // [m] a sheet has no back out of which the hand could come
+  const double rise = thick < kFlat ? kPress : std::min(kPress, 0.9 * thick);
+  return fmt::format(
+      "# The hand that holds the simulated arm. It presses at `center`, in the frame of the arm, whose origin is at z "
+      "= "
+      "0.09 of\n# the world, by `rise` [m], `rate` times a second. With --view it follows the mouse: drag the tip.\n"
+      "hand: {{script: press, center: {}, normal: {}, radius: 0, rise: {}, rate: 0.5}}\n",
+      listOf(position + place.point - kRest), listOf(place.normal), withDigits(rise, 3));
+}
+
+/// The feel of the model. A soft body in a model file brings its own.
+std::string feelLines(const FirstScene& first) {
+  const bool own = first.soft && endingOf(first.model) != ".ma";
+  if (own) return "      # stiffness, damping and mass are in the geometry file\n";
+  const char* const stiffness = "      stiffness: {}             # N/m; smaller is softer\n";
+  if (first.soft) return fmt::format(fmt::runtime(stiffness), 400);
+  return fmt::format(fmt::runtime(stiffness), 800) +
+         "      damping: 2                 # N s/m, against the speed of the press\n"
+         "      # friction_static: 0.3     # the surface is smooth without it and friction_dynamic: 0.2\n";
+}
+
+std::string modelLines(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
+  std::string text = "models:\n  - name: " + modelName(first.model) +
+                     "\n    plugin: " + (first.soft ? "mat_deformable" : "nurbs_rigid") + "\n";
+  text +=
+      "    # It is " + sizeText(place.box.sizes()) + " large. If that is wrong, import it anew with --scale or --fit";
+  text += first.placement.up == 'y' ? "; if its z points up, with --up z.\n" : ".\n";
+  text +=
+      "    # position [m] puts it 4 cm before the resting tip; `center` of the hand moves with it.\n    pose: "
+      "{position: " +
+      listOf(positionOf(place)) +
+      "}\n    parameters:\n      geometry: " + yamlText(pathFrom(first.scene, first.model)) +
+      "   # relative to this file\n";
+  if (!first.soft && (facts.open || !place.faces_hand))
+    text += "      sides: both                # an open shell: felt from both sides\n";
+  text += feelLines(first);
+  if (facts.instances.size() < 2) return text;
+  return text + "      # This is the whole assembly of " + std::to_string(facts.instances.size()) +
+         " parts. For one part alone, or for models that move each by itself:\n      # instance: " +
+         yamlText(facts.instances.front()) + "     # others: hapticd part info " +
+         brep::plainText(fs::path(first.model).filename().string()) + "\n";
+}
+
+std::string textOf(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
+  const std::string from = brep::plainText(fs::path(first.from).filename().string());
+  std::string text =
+      "# A scene to start from, written by `hapticd import " + from +
+      " --scene`. Lengths are in m; x points right, y up, z toward you.\n# After each change: hapticd check "
+      "THIS_FILE\nhapticd: 1\nservo: {rate: 1000}             # Hz\n";
+  if (const auto device = host::shippedFile("devices/simulated-premium15.yaml"))
+    text += "device: " + yamlText(pathFrom(first.scene, *device)) +
+            "   # simulated; the device file of your arm goes here\n";
+  return text + handLines(place, positionOf(place)) + modelLines(first, place, facts);
+}
+
+/// Warns of a model that the arm cannot reach, or that the tip hardly finds, and says which size would fit.
+void warnOfFit(const FirstScene& first, const Vector3d& size) {
+  const double most = size.maxCoeff();
+  if (most <= kLarge && most >= kSmall) return;
+  const std::string scale =
+      first.placement.fit > 0 ? "" : ", or --scale " + shortNumber(first.placement.scale * kFitting / most);
+  std::fprintf(stderr, "warning: %s: is %s large, and %s\n  fix: rm %s, then import it anew with --fit %s%s\n",
+               first.model.c_str(), sizeText(size).c_str(),
+               most > kLarge ? "the arm reaches only a part of it" : "a tip hardly finds it", first.scene.c_str(),
+               withDigits(kFitting, 3).c_str(), scale.c_str());
+}
+
+Result<PressPlace> placeOf(const FirstScene& first) {
+  constexpr double kChordShare = 0.002;
+  const auto shape = importing::activated(first.soft ? "mat_deformable" : "nurbs_rigid", first.model, catalog());
+  if (!shape) return Error{shape.error()};
+  const auto mesh = importing::tessellated(**shape, kChordShare);
+  if (!mesh) return Error{mesh.error()};
+  if (mesh->corners.empty()) return Error{"it has no surface"};
+  return importing::pressPlace(*mesh);
+}
+
+}  // namespace
+
+std::string whyNoScene(const std::string& scene, const std::string& model) {
+  std::error_code error;
+  if (endingOf(scene) != ".yaml" && endingOf(scene) != ".yml")
+    return scene + ": a scene is YAML, expected a name that ends in .yaml";
+  if (model == "-") return "--scene needs a file to name, expected the name of a file for --out, not -";
+  if (fs::exists(fs::symlink_status(scene, error))) return scene + " exists already, expected the name of a new file";
+  if (fs::weakly_canonical(fs::absolute(scene), error) == fs::weakly_canonical(fs::absolute(model), error))
+    return scene + ": is the file that --out names, expected another file";
+  return whyNotWritable(scene);
+}
+
+int writeFirstScene(const FirstScene& first) {
+  const auto place = placeOf(first);
+  const auto facts = factsOf(first.model);
+  const std::string wrong = !place ? place.error() : !facts ? facts.error() : "";
+  if (!wrong.empty()) return fail(kFailed, first.model + " is written, but no scene for it: " + wrong);
+  if (const auto written = writeWhole(first.scene, textOf(first, *place, *facts)); !written)
+    return fail(kFailed, written.error());
+  warnOfFit(first, place->box.sizes());
+  if (first.silent) return kWorked;
+  const char* scene = first.scene.c_str();
+  std::printf("%s\n\nthen:\n  hapticd check %s               # after each change\n  hapticd run %s --view\n", scene,
+              scene, scene);
+  return kWorked;
+}
+
+}  // namespace hapticd::cli
