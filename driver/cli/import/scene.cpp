@@ -5,10 +5,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
@@ -35,7 +40,8 @@ constexpr double kLarge = 0.5;       ///< [m] of a larger model the arm reaches 
 constexpr double kSmall = 0.005;     ///< [m] a smaller model is hard to find with the tip
 constexpr double kFitting = 0.15;    ///< [m] size of a model that is felt well
 constexpr double kPress = 0.004;     ///< [m] how far the hand presses: with about 1 N, which the motors can hold
-constexpr double kOffMiddle = 0.15;  ///< [m] the place that is pressed is at most so far beside the tip
+constexpr double kOffMiddle = 0.15;  ///< [m] how far beside the middle the arm can press
+constexpr double kDeep = 0.03;       ///< [m] how far behind the side it can
 
 /// What the scene says of a part. A model file has none of it.
 struct PartFacts {
@@ -69,6 +75,11 @@ std::string yamlText(const std::string& text) {
   return all ? text : document::jsonLine(text);
 }
 
+/// Returns the name of a file for a comment.
+std::string fileName(const std::string& file) {
+  return brep::plainText(fs::path(file).filename().string());
+}
+
 /// Returns a name for the model: programs and `ctl` need one without spaces and signs.
 std::string modelName(const std::string& file) {
   std::string name = fs::path(file).stem().string();
@@ -100,11 +111,12 @@ std::string sizeText(const Vector3d& size) {
   return in(size.x()) + " x " + in(size.y()) + " x " + in(size.z()) + (large ? " m" : " mm");
 }
 
-/// The place of the model in the world: the side that is pressed before the resting tip.
+/// [m] Returns where the model belongs in the world: the middle of the side that is pressed before the resting tip; or
+/// the pressed place, if the arm could not reach it from there.
 Vector3d positionOf(const PressPlace& place) {
-  Vector3d aside = place.point - place.middleOfSide();
-  aside *= std::max(0.0, 1 - kOffMiddle / std::max(aside.norm(), 1e-9));
-  return kRest - kBeforeTip * place.normal - place.middleOfSide() - aside;
+  const Vector3d middle = place.middleOfSide(), aside = place.point - middle;
+  const bool far = aside.norm() > kOffMiddle || -aside.dot(place.normal) > kDeep;
+  return kRest - kBeforeTip * place.normal - (far ? place.point : middle);
 }
 
 std::string handLines(const PressPlace& place, const Vector3d& position) {
@@ -112,55 +124,61 @@ std::string handLines(const PressPlace& place, const Vector3d& position) {
   constexpr double kFlat = 1e-6;  // [m] a sheet has no back out of which the hand could come
   const double rise = thick < kFlat ? kPress : std::min(kPress, 0.9 * thick);
   return fmt::format(
-      "# The hand that holds the simulated arm. It presses at `center`, in the frame of the arm, whose origin is at z "
-      "= "
-      "0.09 of\n# the world, by `rise` [m], `rate` times a second. With --view it follows the mouse: drag the tip.\n"
+      "# The hand that holds the simulated arm: it moves inwards by `rise` [m] from `center` (in the frame of the arm, "
+      "whose\n"
+      "# origin is at z = 0.09 of the world), `rate` times a second. With --view it follows the mouse: drag the tip.\n"
       "hand: {{script: press, center: {}, normal: {}, radius: 0, rise: {}, rate: 0.5}}\n",
       listOf(position + place.point - kRest), listOf(place.normal), withDigits(rise, 3));
 }
 
+/// Returns a line of the parameters, or one that has no effect before its # is removed.
+std::string parameterLine(const std::string& setting, const std::string& comment) {
+  return fmt::format("      {:<24} # {}\n", setting, comment);
+}
+
 /// The feel of the model. A soft body in a model file brings its own.
 std::string feelLines(const FirstScene& first) {
-  const bool own = first.soft && endingOf(first.model) != ".ma";
-  if (own) return "      # stiffness, damping and mass are in the geometry file\n";
-  const char* const stiffness = "      stiffness: {}             # N/m; smaller is softer\n";
-  if (first.soft) return fmt::format(fmt::runtime(stiffness), 400);
-  return fmt::format(fmt::runtime(stiffness), 800) +
-         "      damping: 2                 # N s/m, against the speed of the press\n"
-         "      # friction_static: 0.3     # the surface is smooth without it and friction_dynamic: 0.2\n";
+  if (first.soft && endingOf(first.model) != ".ma")
+    return "      # stiffness, damping and mass are in the geometry file\n";
+  if (first.soft) return parameterLine("stiffness: 400", "N/m; smaller is softer");
+  return parameterLine("stiffness: 800", "N/m; smaller is softer") +
+         parameterLine("damping: 2", "N s/m, against the speed of a press") +
+         parameterLine("# friction_static: 0.3", "with friction_dynamic: 0.2; without both the surface is slippery");
+}
+
+/// A hint for an assembly; "" for a single part.
+std::string instanceLines(const FirstScene& first, const PartFacts& facts) {
+  if (facts.instances.size() < 2) return "";
+  return fmt::format(
+      "      # This is the whole assembly of {} parts. One of them alone, or each as a model that moves by itself:\n"
+      "      # instance: {}   # all names: hapticd part info {}\n",
+      facts.instances.size(), yamlText(facts.instances.front()), fileName(first.model));
 }
 
 std::string modelLines(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
-  std::string text = "models:\n  - name: " + modelName(first.model) +
-                     "\n    plugin: " + (first.soft ? "mat_deformable" : "nurbs_rigid") + "\n";
-  text +=
-      "    # It is " + sizeText(place.box.sizes()) + " large. If that is wrong, import it anew with --scale or --fit";
-  text += first.placement.up == 'y' ? "; if its z points up, with --up z.\n" : ".\n";
-  text +=
-      "    # position [m] puts it 4 cm before the resting tip; `center` of the hand moves with it.\n    pose: "
-      "{position: " +
-      listOf(positionOf(place)) +
-      "}\n    parameters:\n      geometry: " + yamlText(pathFrom(first.scene, first.model)) +
-      "   # relative to this file\n";
+  std::string text = fmt::format(
+      "models:\n  - name: {}\n    plugin: {}\n"
+      "    # {} large. Is that wrong? Import it anew with --scale or --fit.{}\n"
+      "    # `position` [m] puts it 4 cm before the resting tip. If you change it, change `center` of the hand as "
+      "well.\n"
+      "    pose: {{position: {}}}\n    parameters:\n",
+      modelName(first.model), first.soft ? "mat_deformable" : "nurbs_rigid", sizeText(place.box.sizes()),
+      first.placement.up == 'y' ? " Does its z point up? Add --up z." : "", listOf(positionOf(place)));
+  text += parameterLine("geometry: " + yamlText(pathFrom(first.scene, first.model)), "paths are relative to this file");
   if (!first.soft && (facts.open || !place.faces_hand))
-    text += "      sides: both                # an open shell: felt from both sides\n";
-  text += feelLines(first);
-  if (facts.instances.size() < 2) return text;
-  return text + "      # This is the whole assembly of " + std::to_string(facts.instances.size()) +
-         " parts. For one part alone, or for models that move each by itself:\n      # instance: " +
-         yamlText(facts.instances.front()) + "     # others: hapticd part info " +
-         brep::plainText(fs::path(first.model).filename().string()) + "\n";
+    text += parameterLine("sides: both", "an open shell, felt from both sides");
+  return text + feelLines(first) + instanceLines(first, facts);
 }
 
 std::string textOf(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
-  const std::string from = brep::plainText(fs::path(first.from).filename().string());
-  std::string text =
-      "# A scene to start from, written by `hapticd import " + from +
-      " --scene`. Lengths are in m; x points right, y up, z toward you.\n# After each change: hapticd check "
-      "THIS_FILE\nhapticd: 1\nservo: {rate: 1000}             # Hz\n";
+  std::string text = fmt::format(
+      "# A scene to start from, written by `hapticd import {} --scene {}`.\n"
+      "# Lengths are in m; x points right, y up, z toward you. After each change: hapticd check {}\n"
+      "hapticd: 1\nservo: {{rate: 1000}}\n",
+      fileName(first.from), fileName(first.scene), fileName(first.scene));
   if (const auto device = host::shippedFile("devices/simulated-premium15.yaml"))
-    text += "device: " + yamlText(pathFrom(first.scene, *device)) +
-            "   # simulated; the device file of your arm goes here\n";
+    text += "# A simulated arm. The device file of a real one goes here (hapticd device new).\ndevice: " +
+            yamlText(pathFrom(first.scene, *device)) + "\n";
   return text + handLines(place, positionOf(place)) + modelLines(first, place, facts);
 }
 
