@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/file_ending.hpp"
@@ -39,19 +41,22 @@ constexpr double kBeforeTip = 0.04;  ///< [m] distance from there to the model
 constexpr double kLarge = 0.5;       ///< [m] of a larger model the arm reaches only a part
 constexpr double kSmall = 0.005;     ///< [m] a smaller model is hard to find with the tip
 constexpr double kFitting = 0.15;    ///< [m] size of a model that is felt well
+constexpr double kStiffness = 800;   ///< [N/m] of a rigid model, as the shipped scenes have it
 constexpr double kPress = 0.004;     ///< [m] how far the hand presses: with about 1 N, which the motors can hold
 constexpr double kOffMiddle = 0.15;  ///< [m] how far beside the middle the arm can press
 constexpr double kDeep = 0.03;       ///< [m] how far behind the side it can
 
-/// What the scene says of a part. A model file has none of it.
-struct PartFacts {
-  bool open = false;
-  std::vector<std::string> instances;  ///< the paths of those that have a body
+/// What the scene says of a model.
+struct ModelFacts {
+  PressPlace place;
+  double stiffness = kStiffness;       ///< [N/m] of a rigid model
+  bool open = false;                   ///< a part that is open
+  std::vector<std::string> instances;  ///< of a part: the paths of those that have a body
 };
 
-Result<PartFacts> factsOf(const std::string& file) {
-  PartFacts facts;
-  if (endingOf(file) != ".hpart") return facts;
+/// Reads what a part says of itself. A model file has none of it.
+Result<void> readPartFacts(const std::string& file, ModelFacts& facts) {
+  if (endingOf(file) != ".hpart") return {};
   const auto bytes = readRegular(file, brep::kMostPartBytes);
   if (!bytes) return Error{file + ": " + bytes.error()};
   try {
@@ -65,6 +70,31 @@ Result<PartFacts> factsOf(const std::string& file) {
   } catch (const brep::PartError& error) {
     return Error{error.what()};
   }
+  return {};
+}
+
+/// [N/m] Returns the stiffness with which a tip does not go through the walls of a model, as its plugin advises; the
+/// usual one if none is advised, or one with which the simulated arm trembles.
+double stiffnessFor(const std::string& warnings) {
+  constexpr std::string_view kAdvice = "stiffness: ";
+  constexpr double kStiffest = 3000;
+  const std::size_t at = warnings.find(kAdvice), end = warnings.find(" keeps the tip inside");
+  if (at == std::string::npos || end == std::string::npos) return kStiffness;
+  const double advised = std::atof(warnings.c_str() + at + kAdvice.size());
+  return advised > kStiffness && advised <= kStiffest ? advised : kStiffness;
+}
+
+Result<ModelFacts> factsOf(const FirstScene& first) {
+  constexpr double kChordShare = 0.002;
+  std::string warnings;
+  const auto shape =
+      importing::activated(first.soft ? "mat_deformable" : "nurbs_rigid", first.model, catalog(), "", 1, &warnings);
+  if (!shape) return Error{shape.error()};
+  const auto mesh = importing::tessellated(**shape, kChordShare);
+  if (!mesh) return Error{mesh.error()};
+  if (mesh->corners.empty()) return Error{"it has no surface"};
+  ModelFacts facts{importing::pressPlace(*mesh), stiffnessFor(warnings), false, {}};
+  if (const auto read = readPartFacts(first.model, facts); !read) return Error{read.error()};
   return facts;
 }
 
@@ -137,17 +167,19 @@ std::string parameterLine(const std::string& setting, const std::string& comment
 }
 
 /// The feel of the model. A soft body in a model file brings its own.
-std::string feelLines(const FirstScene& first) {
+std::string feelLines(const FirstScene& first, double stiffness) {
   if (first.soft && endingOf(first.model) != ".ma")
     return "      # stiffness, damping and mass are in the geometry file\n";
   if (first.soft) return parameterLine("stiffness: 400", "N/m; smaller is softer");
-  return parameterLine("stiffness: 800", "N/m; smaller is softer") +
+  return parameterLine("stiffness: " + shortNumber(stiffness),
+                       stiffness > kStiffness ? "N/m; with less the tip comes out behind the thinnest wall"
+                                              : "N/m; smaller is softer") +
          parameterLine("damping: 2", "N s/m, against the speed of a press") +
          parameterLine("# friction_static: 0.3", "with friction_dynamic: 0.2; without both the surface is slippery");
 }
 
 /// A hint for an assembly; "" for a single part.
-std::string instanceLines(const FirstScene& first, const PartFacts& facts) {
+std::string instanceLines(const FirstScene& first, const ModelFacts& facts) {
   if (facts.instances.size() < 2) return "";
   return fmt::format(
       "      # This is the whole assembly of {} parts. One of them alone, or each as a model that moves by itself:\n"
@@ -155,7 +187,8 @@ std::string instanceLines(const FirstScene& first, const PartFacts& facts) {
       facts.instances.size(), yamlText(facts.instances.front()), fileName(first.model));
 }
 
-std::string modelLines(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
+std::string modelLines(const FirstScene& first, const ModelFacts& facts) {
+  const PressPlace& place = facts.place;
   std::string text = fmt::format(
       "models:\n  - name: {}\n    plugin: {}\n"
       "    # {} large. Is that wrong? Import it anew with --scale or --fit.{}\n"
@@ -167,10 +200,10 @@ std::string modelLines(const FirstScene& first, const PressPlace& place, const P
   text += parameterLine("geometry: " + yamlText(pathFrom(first.scene, first.model)), "paths are relative to this file");
   if (!first.soft && (facts.open || !place.faces_hand))
     text += parameterLine("sides: both", "an open shell, felt from both sides");
-  return text + feelLines(first) + instanceLines(first, facts);
+  return text + feelLines(first, facts.stiffness) + instanceLines(first, facts);
 }
 
-std::string textOf(const FirstScene& first, const PressPlace& place, const PartFacts& facts) {
+std::string textOf(const FirstScene& first, const ModelFacts& facts) {
   std::string text = fmt::format(
       "# A scene to start from, written by `hapticd import {} --scene {}`.\n"
       "# Lengths are in m; x points right, y up, z toward you. After each change: hapticd check {}\n"
@@ -179,7 +212,7 @@ std::string textOf(const FirstScene& first, const PressPlace& place, const PartF
   if (const auto device = host::shippedFile("devices/simulated-premium15.yaml"))
     text += "# A simulated arm. The device file of a real one goes here (hapticd device new).\ndevice: " +
             yamlText(pathFrom(first.scene, *device)) + "\n";
-  return text + handLines(place, positionOf(place)) + modelLines(first, place, facts);
+  return text + handLines(facts.place, positionOf(facts.place)) + modelLines(first, facts);
 }
 
 /// Warns of a model that the arm cannot reach, or that the tip hardly finds, and says which size would fit.
@@ -192,16 +225,6 @@ void warnOfFit(const FirstScene& first, const Vector3d& size) {
                first.model.c_str(), sizeText(size).c_str(),
                most > kLarge ? "the arm reaches only a part of it" : "a tip hardly finds it", first.scene.c_str(),
                withDigits(kFitting, 3).c_str(), scale.c_str());
-}
-
-Result<PressPlace> placeOf(const FirstScene& first) {
-  constexpr double kChordShare = 0.002;
-  const auto shape = importing::activated(first.soft ? "mat_deformable" : "nurbs_rigid", first.model, catalog());
-  if (!shape) return Error{shape.error()};
-  const auto mesh = importing::tessellated(**shape, kChordShare);
-  if (!mesh) return Error{mesh.error()};
-  if (mesh->corners.empty()) return Error{"it has no surface"};
-  return importing::pressPlace(*mesh);
 }
 
 }  // namespace
@@ -218,13 +241,11 @@ std::string whyNoScene(const std::string& scene, const std::string& model) {
 }
 
 int writeFirstScene(const FirstScene& first) {
-  const auto place = placeOf(first);
-  const auto facts = factsOf(first.model);
-  const std::string wrong = !place ? place.error() : !facts ? facts.error() : "";
-  if (!wrong.empty()) return fail(kFailed, first.model + " is written, but no scene for it: " + wrong);
-  if (const auto written = writeWhole(first.scene, textOf(first, *place, *facts)); !written)
+  const auto facts = factsOf(first);
+  if (!facts) return fail(kFailed, first.model + " is written, but no scene for it: " + facts.error());
+  if (const auto written = writeWhole(first.scene, textOf(first, *facts)); !written)
     return fail(kFailed, written.error());
-  warnOfFit(first, place->box.sizes());
+  warnOfFit(first, facts->place.box.sizes());
   if (first.silent) return kWorked;
   const char* scene = first.scene.c_str();
   std::printf("%s\n\nthen:\n  hapticd check %s               # after each change\n  hapticd run %s --view\n", scene,

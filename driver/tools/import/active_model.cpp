@@ -10,8 +10,8 @@ namespace hapticd::importing {
 namespace fs = std::filesystem;
 
 Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const fs::path& geometry,
-                                                       host::Catalog& catalog, const std::string& more,
-                                                       uint32_t probes) {
+                                                       host::Catalog& catalog, const std::string& more, uint32_t probes,
+                                                       std::string* warnings) {
   std::string quoted;
   for (const char c : fs::absolute(geometry).string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
   const std::string text =
@@ -22,10 +22,12 @@ Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const
   if (!scene || scene->models.empty())
     return Error{problems.empty() ? std::string("no scene") : problems.front().text()};
   std::string said;
-  auto shape =
-      host::ShapeInstance::create(scene->models[0], [&said](int level, const std::string&, const std::string& what) {
-        if (level >= HSP_LOG_WARNING) said = what;
-      });
+  auto shape = host::ShapeInstance::create(scene->models[0],
+                                           [&said, warnings](int level, const std::string&, const std::string& what) {
+                                             if (level < HSP_LOG_WARNING) return;
+                                             said = what;
+                                             if (warnings != nullptr) *warnings += what + "\n";
+                                           });
   if (!shape) return Error{shape.error()};
   hsp_activation activation{};
   activation.struct_size = sizeof activation;
