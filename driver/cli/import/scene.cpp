@@ -151,12 +151,12 @@ Vector3d positionOf(const PressPlace& place) {
 
 std::string handLines(const PressPlace& place, const Vector3d& position) {
   const double thick = (place.point - place.box.min()).dot(place.normal);
-  constexpr double kFlat = 1e-6;  // [m] a sheet has no back out of which the hand could come
+  constexpr double kFlat = 1e-4;  // [m] a sheet has no back out of which the hand could come
   const double rise = thick < kFlat ? kPress : std::min(kPress, 0.9 * thick);
   return fmt::format(
-      "# The hand that holds the simulated arm: it moves inwards by `rise` [m] from `center` (in the frame of the arm, "
-      "whose\n"
-      "# origin is at z = 0.09 of the world), `rate` times a second. With --view it follows the mouse: drag the tip.\n"
+      "# The hand that holds the simulated arm: it presses by `rise` [m] at `center`, `rate` times a second. The "
+      "frame\n"
+      "# of the arm has its origin at z = 0.09 of the world. With --view the hand follows the mouse: drag the tip.\n"
       "hand: {{script: press, center: {}, normal: {}, radius: 0, rise: {}, rate: 0.5}}\n",
       listOf(position + place.point - kRest), listOf(place.normal), withDigits(rise, 3));
 }
@@ -235,9 +235,10 @@ std::string whyNoScene(const std::string& scene, const std::string& model) {
     return scene + ": a scene is YAML, expected a name that ends in .yaml";
   if (model == "-") return "--scene needs a file to name, expected the name of a file for --out, not -";
   if (fs::exists(fs::symlink_status(scene, error))) return scene + " exists already, expected the name of a new file";
+  if (const std::string wrong = whyNotWritable(scene); !wrong.empty()) return wrong;
   if (fs::weakly_canonical(fs::absolute(scene), error) == fs::weakly_canonical(fs::absolute(model), error))
     return scene + ": is the file that --out names, expected another file";
-  return whyNotWritable(scene);
+  return "";
 }
 
 int writeFirstScene(const FirstScene& first) {
