@@ -296,8 +296,7 @@ void addImport(const Command& app, int& exit_code) {
       "Comments are copied to the model file, so that credit and licence are kept.\n\nExamples:\n  hapticd import "
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
       "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart --scene engine.yaml\n  hapticd import --medial "
-      "hand.stl --scale "
-      "0.001 --tolerance 0.001 hand.ma");
+      "hand.stl --scale 0.001 --tolerance 0.001 hand.ma");
   command.callback([options, command, &exit_code] {
     for (const char* one : kMaterial)
       if (options->material.empty() && command.given(one)) options->material = one;

@@ -67,8 +67,9 @@ document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& b
       const scene::Model& model = scene.models[i];
       if (!boxes[i] || model.kinematic || (i < moves.size() && moves[i])) continue;
       const Inside inside = wayInside(device, *hand, model, *boxes[i]);
-      constexpr double kBehind = 1e-4;  // [m] a hand that aims at the far end of the box presses a sheet there: an open
-                                        // shell has no back out of which the hand could come
+      // [m] A hand that aims at the far end of the box presses a sheet there: an open shell has no back out of which
+      // the hand could come.
+      constexpr double kBehind = 1e-4;
       if (!(inside.from < inside.to) || inside.to < kBehind || hand->rise <= inside.to) continue;
       const HandKey key = keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"});
       document::report(warnings, key.place, key.id,
