@@ -179,9 +179,9 @@ std::string readModelText(const std::string& path) {
   if (text) return *std::move(text);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
+  if (error || size <= kMostJson) throwOne(path, problems.front().what);  // such as: Permission denied
   // To make a large file of another kind smaller would not help.
-  if (const std::string foreign = document::foreignFile("", path); !error && size > kMostJson && !foreign.empty())
-    throwOne(path, foreign);
+  if (const std::string foreign = document::foreignFile("", path); !foreign.empty()) throwOne(path, foreign);
   throwOne(path, problems.front().what +
                      "; expected a model file (format hapticd-model/1) of at most 32 MiB, or a part (.hpart), which " +
                      "may be larger: " + kImport);

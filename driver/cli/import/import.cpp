@@ -10,6 +10,7 @@
 #include "cli/import/cad.hpp"
 #include "cli/import/file_content.hpp"
 #include "cli/import/mesh.hpp"
+#include "cli/import/scene.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/output_file.hpp"
 #include "document/node.hpp"
@@ -24,7 +25,7 @@ using namespace importing;
 namespace {
 
 struct ImportArguments {
-  std::string file, out, up = "y", outward = "auto";
+  std::string file, out, scene, up = "y", outward = "auto";
   Placement placement;
   bool medial = false;
   MedialImport body;
@@ -171,6 +172,16 @@ int importModel(const ImportArguments& options) {
   return importPatches(options, placement);
 }
 
+/// Imports the model, and writes a scene for it if one is asked for.
+int importAll(const ImportArguments& options) {
+  if (options.scene.empty()) return importModel(options);
+  if (const std::string wrong = whyNoScene(options.scene, options.out); !wrong.empty()) return fail(kBadInput, wrong);
+  if (const int code = importModel(options); code != kWorked) return code;
+  Placement placement = options.placement;
+  placement.up = options.up[0];
+  return writeFirstScene({options.file, options.out, options.scene, placement, options.medial, options.json});
+}
+
 /// The material of a soft body. Only a model file (.yaml) holds it: that of a .ma file stands in the scene.
 constexpr const char* kMaterial[] = {"--stiffness", "--young", "--poisson", "--thickness", "--damping", "--mass"};
 
@@ -275,16 +286,21 @@ void addImport(const Command& app, int& exit_code) {
   command.addOption("--time", options->cad.time_s, "CAD: longest time [s]; default: 600").within(1.0, 1e6);
   command.addOption("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096").within(64.0, 1e7);
   addMedialOptions(command, *options);
+  command
+      .addOption("--scene", options->scene,
+                 "also write a first scene for what is made: a new file, .yaml, to be run with hapticd run --view")
+      .excludes("--check")
+      .excludes("--calibrate");
   command.footer(
       "A .bpt file holds the number of patches, then for each its two degrees and its points; # begins a comment.\n"
       "Comments are copied to the model file, so that credit and licence are kept.\n\nExamples:\n  hapticd import "
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
-      "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
-      "0.001 --tolerance 0.001 hand.ma");
+      "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart --scene engine.yaml\n  hapticd import --medial "
+      "hand.stl --scale 0.001 --tolerance 0.001 hand.ma");
   command.callback([options, command, &exit_code] {
     for (const char* one : kMaterial)
       if (options->material.empty() && command.given(one)) options->material = one;
-    exit_code = importModel(*options);
+    exit_code = importAll(*options);
   });
 }
 

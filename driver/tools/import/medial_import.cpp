@@ -34,18 +34,6 @@ bool endsWith(const std::string& name, const char* end) {
   return lower.ends_with(end);
 }
 
-Result<Triangles> tessellated(host::ShapeInstance& shape, double share) {
-  if (shape.geometry() == nullptr) return Error{"the model has no triangles"};
-  hsp_mesh mesh{};
-  if (shape.tessellate(share * shape.report().size_m, mesh) < 0) return Error{"the model cannot be cut into triangles"};
-  Triangles result;
-  for (uint32_t i = 0; i < mesh.vertex_count; ++i)
-    result.points.emplace_back(Eigen::Map<const Eigen::Vector3f>(mesh.xyz + 3 * std::size_t{i}).cast<double>());
-  for (uint32_t t = 0; t < mesh.triangle_count; ++t)
-    result.corners.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});
-  return result;
-}
-
 std::string toMa(const MedialAxis& axis, const std::string& source) {
   std::string text = fmt::format("# made from {} by hapticd import --medial\n{} {} {}\n", source, axis.spheres.size(),
                                  axis.edges.size(), axis.triangles.size());

@@ -67,7 +67,10 @@ document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& b
       const scene::Model& model = scene.models[i];
       if (!boxes[i] || model.kinematic || (i < moves.size() && moves[i])) continue;
       const Inside inside = wayInside(device, *hand, model, *boxes[i]);
-      if (!(inside.from < inside.to) || inside.to < 0 || hand->rise <= inside.to) continue;
+      // [m] A hand that aims at the far end of the box presses a sheet there: an open shell has no back out of which
+      // the hand could come.
+      constexpr double kBehind = 1e-4;
+      if (!(inside.from < inside.to) || inside.to < kBehind || hand->rise <= inside.to) continue;
       const HandKey key = keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"});
       document::report(warnings, key.place, key.id,
                        fmt::format("the hand of {} goes {:.4g} m inwards, and {} ends {:.4g} m inwards (it is {:.4g} m "

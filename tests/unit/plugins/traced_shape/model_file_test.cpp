@@ -56,6 +56,17 @@ TEST_F(ModelFileTest, NamesThePluginForTheFileOfASoftBody) {
   EXPECT_NE(complaintOf(soft).find("use plugin: mat_deformable"), std::string::npos) << complaintOf(soft);
 }
 
+/// Its size and format are not what is wrong with it.
+TEST_F(ModelFileTest, SaysOnlyWhyAFileCannotBeRead) {
+  try {
+    readModelFile("/proc/self/mem");  // a regular file; no process has a page at its first byte
+    ADD_FAILURE() << "was read";
+  } catch (const ModelFileError& e) {
+    EXPECT_NE(std::string(e.what()).find("cannot be read"), std::string::npos) << e.what();
+    EXPECT_EQ(std::string(e.what()).find("expected a model file"), std::string::npos) << e.what();
+  }
+}
+
 /// Two million numbers of YAML would take a gigabyte: refused before anything is parsed. As JSON they are read.
 TEST_F(ModelFileTest, RefusesMoreYamlThanMemoryIsGoodFor) {
   std::string knots = "0, 0";
