@@ -77,8 +77,39 @@ class FaceMesh {
       return std::isfinite(wanted) ? std::clamp(static_cast<int>(std::min<double>(wanted, kMostCells)), 1, kMostCells)
                                    : kMostCells;
     };
-    cells_u_ = cells(bend_u);
-    cells_v_ = cells(bend_v);
+    cells_u_ = refined(0, cells(bend_u));
+    cells_v_ = refined(1, cells(bend_v));
+  }
+
+  /// Doubles the cells along u (0) or v (1) until no chord of a cell is far from the face: at a crease the second
+  /// derivatives are those beside it.
+  int refined(int axis, int cells) const {
+    while (2 * cells <= kMostCells && farthestChord(axis, cells) > 2 * chord_error_) cells *= 2;
+    return cells;
+  }
+
+  /// Returns the largest distance [m] of the middle of a cell's chord from the face, on a few lines along u (0) or v
+  /// (1).
+  double farthestChord(int axis, int cells) const {
+    constexpr int kLines = 3;
+    double farthest = 0;
+    spline::SurfacePoint from, middle, to;
+    const auto evaluate = [&](int line, double share, spline::SurfacePoint& E) {
+      Vector2d at((line + 0.5) / kLines, (line + 0.5) / kLines);
+      at[axis] = share;
+      const Vector2d uv = lo_ + at.cwiseProduct(range_);
+      geometry_.surface(face_.surface, uv[0], uv[1], E);
+    };
+    for (int line = 0; line < kLines; ++line) {
+      evaluate(line, 0, from);
+      for (int i = 0; i < cells; ++i) {
+        evaluate(line, (i + 0.5) / cells, middle);
+        evaluate(line, (i + 1.0) / cells, to);
+        farthest = std::max(farthest, (middle.S - 0.5 * (from.S + to.S)).norm());
+        from = to;
+      }
+    }
+    return farthest;
   }
 
   void add(Vector2d a, Vector2d b) {

@@ -163,6 +163,7 @@ def cad():
     text, _ = made(join("inch.step"), "inch.hpart")
     check("inches are metres in the scene", "25.4 x 25.4 x 25.4 mm" in text, text)
     made(join("trough.brep"), "open.hpart")
+    made(join("roof.brep"), "roof.hpart")  # a crease: the hand presses what is drawn
     text, _ = made(join("assembly.step"), "assembly.hpart")
     name = re.search(r"# (instance: \S+)", text)
     check("an assembly names its parts", name and "the whole assembly of 2 parts" in text and text.count("plugin:") == 1, text)
