@@ -35,7 +35,8 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   const double* q = activation.pose.orientation;
   turn_ = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
   button_.reset();
-  last_x2_ = stored_ = blind_for_ = 0;
+  last_x2_ = stored_ = 0;
+  blind_for_.assign(std::max(activation.max_probes, 1u), 0);
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.reserve(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
@@ -51,7 +52,8 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
 void PushButton::reset() noexcept HSP_RT {
   TracedShape::reset();
   button_.reset();
-  stored_ = blind_for_ = 0;
+  stored_ = 0;
+  std::fill(blind_for_.begin(), blind_for_.end(), 0);
 }
 
 /// Lists the probes that may press, measured on the cap at each probe. If the cap's normal is tilted, its stiffness
@@ -63,7 +65,9 @@ bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
   bool blind = false, pressed = false;
   for (uint32_t i = 0; i < step.count; ++i) {
     const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
-    blind |= (probe.flags & HSP_IN_INVALID) != 0;
+    double& blind_for = blind_for_[i];
+    blind_for = (probe.flags & HSP_IN_INVALID) != 0 ? blind_for + step.dt_s : 0;
+    blind |= blind_for > 0 && blind_for <= kGone;
     hsp_contact unused{};
     const Touch touch = trace(probe, step, unused);
     const double along = -touch.normal.dot(inward_);
@@ -72,8 +76,7 @@ bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
     presses_.push_back({stiffness_ * along * along, travel, along < 0});
     pressed |= along > 0 && travel > 0;
   }
-  blind_for_ = blind ? blind_for_ + step.dt_s : 0;
-  return pressed || !blind || blind_for_ > kGone;
+  return pressed || !blind;
 }
 
 /// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of

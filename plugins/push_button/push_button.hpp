@@ -54,7 +54,7 @@ class PushButton final : public TracedShape {
   Eigen::Vector3d rest_{0, 0, 0};        // position of the model frame with the button at rest, in the world
   Eigen::Quaterniond turn_{1, 0, 0, 0};  // orientation of the model, in the world
   double last_x2_ = 0, stored_ = 0;
-  double blind_for_ = 0;  // [s] time for which some probe has had no sample
+  std::vector<double> blind_for_;  // [s] time for which each probe has had no sample
   std::optional<MovedProbes> probes_;
   hsp_ext_energy energy_extension_{};
 };

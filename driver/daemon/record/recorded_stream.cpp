@@ -56,12 +56,13 @@ void RecordedStream::setChunkRows(uint32_t rows) {
   pages_per_chunk_ = (rows - 1) / page_rows_ + 1;
 }
 
-/// Reads a page in place of the oldest one, unless it is one of those that were read last.
+/// Returns a page as the first of pages_. Reads it in place of the one that was asked for longest ago, unless it is
+/// there.
 const RecordedStream::Page& RecordedStream::fetch(uint64_t number) const {
-  for (size_t i = 0; i < pages_.size(); ++i)
-    if (pages_[i].number == number) return pages_[i];
-  newest_ = (newest_ + 1) % pages_.size();
-  Page& page = pages_[newest_];
+  auto at = std::find_if(pages_.begin(), pages_.end() - 1, [&](const Page& page) { return page.number == number; });
+  std::rotate(pages_.begin(), at, at + 1);
+  Page& page = pages_.front();
+  if (page.number == number) return page;
   page.number = number;
   const uint64_t first = number % pages_per_chunk_ * page_rows_;
   page.rows.resize(size_t{std::min<uint32_t>(page_rows_, chunk_rows_ - static_cast<uint32_t>(first))} * row_bytes_);

@@ -29,7 +29,7 @@ class RecordedStream {
     const uint64_t at = first_ + index, slot = ring_rows_ == 0 ? at : at % ring_rows_;
     const uint64_t in_chunk = slot % chunk_rows_,
                    number = slot / chunk_rows_ * pages_per_chunk_ + in_chunk / page_rows_;
-    const Page& page = pages_[newest_].number == number ? pages_[newest_] : fetch(number);
+    const Page& page = pages_.front().number == number ? pages_.front() : fetch(number);
     return page.rows.data() + in_chunk % page_rows_ * row_bytes_;
   }
   const Column* find(const std::string& name) const;
@@ -54,8 +54,7 @@ class RecordedStream {
   uint64_t rows_ = 0, first_ = 0, ring_rows_ = 0, lost_ = 0;
   const RecordedBytes* bytes_ = nullptr;
   std::vector<uint64_t> chunks_;  ///< addresses
-  mutable std::array<Page, 4> pages_;
-  mutable size_t newest_ = 0;
+  mutable std::array<Page, 4> pages_;  ///< that were asked for last, the newest first
 };
 
 }  // namespace hapticd::record

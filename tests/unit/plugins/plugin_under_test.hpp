@@ -52,6 +52,8 @@ class PluginUnderTest {
     return kind().activate(shape_, &activation, &report);
   }
 
+  std::vector<uint32_t> own_flags;  ///< of each probe, besides those that tick() is given
+
   /// One tick with probes at world positions and velocities; the first has dt = 0.
   void tick(const std::vector<Vector3d>& positions, const std::vector<Vector3d>& velocities = {}, uint32_t flags = 0) {
     search(positions);
@@ -65,7 +67,7 @@ class PluginUnderTest {
       Eigen::Map<Vector3d>(probes[i].position) = turn.conjugate() * arm;
       if ((report.flags & HSP_R_VELOCITY) != 0) Eigen::Map<Vector3d>(probes[i].velocity) = turn.conjugate() * relative;
       probes[i].orientation[0] = 1;
-      probes[i].flags = flags;
+      probes[i].flags = flags | (i < own_flags.size() ? own_flags[i] : 0);
     }
     contacts.assign(positions.size(), hsp_contact{});
     hsp_step step{};

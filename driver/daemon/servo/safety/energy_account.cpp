@@ -10,9 +10,13 @@ void EnergyAccount::add(const Eigen::Vector3d& force, const Eigen::Vector3d& pos
                         LastPush& last) noexcept HSP_RT {
   const double stored = force.norm() * std::max(depth, 0.0);
   // Nobody knows how a probe that jumped came to its depth, so the contact counts as pressed by a hand.
-  given_ += last.known ? (last.force + force).dot(position - last.position) / 2 : -stored;
+  double work = -stored;
+  if (last.known) work = (last.force + force).dot(position - last.position) / 2;
+  // After a late tick, or a jump of the path, a probe that left is far away. It was pushed over its depth alone.
+  if (last.known && force.isZero(0)) work = std::min(work, last.stored / 2);
+  given_ += work;
   stored_ += stored;
-  last = {force, position, true};
+  last = {force, position, stored, true};
 }
 
 bool EnergyAccount::closeStep(double dt) noexcept HSP_RT {

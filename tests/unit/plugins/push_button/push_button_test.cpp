@@ -189,6 +189,20 @@ TEST(PushButton, ComesBackIfNoSampleComesAnyMore) {
   EXPECT_EQ(plugin.position().y(), 0);
 }
 
+TEST(PushButton, AnArmThatIsGoneDoesNotLetGoOfWhatAnotherPresses) {
+  const Button button;
+  PluginUnderTest plugin;
+  button.make(plugin, 2);
+  const Eigen::Vector3d away(0.02, kTop + 0.05, 0);
+  plugin.tick({away, {0, kTop + 1e-3, 0}});
+  plugin.own_flags = {HSP_IN_INVALID, 0};
+  for (int i = 0; i < 100; ++i) plugin.tick({away, {0, kTop - 0.008, 0}});
+  const double pressed = plugin.position().y();
+  EXPECT_LT(pressed, -1e-3);
+  plugin.tick({away, {0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
+  EXPECT_EQ(plugin.position().y(), pressed) << "one sample was lost";
+}
+
 TEST(PushButton, EnergyOverAPressIsNeverGained) {
   const Button button;
   PluginUnderTest plugin;

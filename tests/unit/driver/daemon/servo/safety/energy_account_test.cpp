@@ -67,6 +67,21 @@ TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
   }
 }
 
+/// As after a late tick, or if the path of the model jumps.
+TEST(EnergyAccount, AProbeThatIsFarAwayAtOnceGotWhatWasStored) {
+  Book book;
+  for (int i = 0; i <= 10; ++i) ASSERT_FALSE(book.step(-1e-3 * i, 2 * i, 1e-3 * i));
+  EXPECT_FALSE(book.step(0.06, 0, -0.06));
+  EXPECT_NEAR(book.account.given(), 0, 1e-3);
+}
+
+TEST(EnergyAccount, APushThatRestsEachOtherTickIsFoundOut) {
+  Book book;
+  bool found = false;
+  for (int i = 0; i < 1000 && !found; ++i) found = book.step(1e-3 * i, i % 2 == 0 ? 8 : 0, 1e-4);
+  EXPECT_TRUE(found);
+}
+
 TEST(EnergyAccount, ALittlePowerIsAllowedForever) {
   Book book;
   double x = 0;
