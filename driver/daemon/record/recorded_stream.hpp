@@ -53,7 +53,7 @@ class RecordedStream {
   uint32_t row_bytes_ = 8, chunk_rows_ = 1, page_rows_ = 1, pages_per_chunk_ = 1;
   uint64_t rows_ = 0, first_ = 0, ring_rows_ = 0, lost_ = 0;
   const RecordedBytes* bytes_ = nullptr;
-  std::vector<uint64_t> chunks_;  ///< addresses
+  std::vector<uint64_t> chunks_;       ///< addresses
   mutable std::array<Page, 4> pages_;  ///< that were asked for last, the newest first
 };
 

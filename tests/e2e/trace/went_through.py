@@ -53,4 +53,10 @@ for thick in (0.004, 0.08, 0.12):
             rows = carried([], {"geometry": part, "tip_radius": radius})
             pushes(f"a part of slabs of {1e3 * thick:g} mm, a tip of {1e3 * radius:g} mm", rows, thick + 2 * radius)
 pushes("a sheet", carried([quad([0.0, -0.03, -0.03], [0, 0.06, 0], [0, 0, 0.06], "sheet")], {"sides": "both"}), 0)
+
+# A body whose path jumps leaves the probe at once, 60 mm away. Its surface gave back what was pressed, so nobody is blamed.
+slab, x = block([-0.08, -0.03, -0.03], [0.0, 0.03, 0.03]), ((0.0, -0.01), (1.0, 0.008), (1.001, -0.06), (2.0, -0.06))
+samples, path = [(1e-3 * i, 0.0, 0.0, 0.0) for i in range(2001)], [(t, at, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0) for t, at in x]
+rows = trace(HAPTICD, slab, samples, None, path)[0]
+check("a slab that jumps away pushed until then", abs(max(row["fx"] for row in rows) - 8) < 0.1 and rows[-1]["fx"] == 0)
 finish()

@@ -12,7 +12,7 @@ namespace hapticd::servo {
 struct LastPush {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m] of the probe
-  double stored = 0;                                         ///< [J] that it could give back at most
+  double stored = 0;                                   ///< [J] that it could give back at most
   bool known = false;  ///< false: the probe jumped, its sample was bad, or somebody changed the model
 };
 
