@@ -269,8 +269,7 @@ void addImport(const Command& app, int& exit_code) {
   command
       .addOption("file", options->file,
                  "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep, .brp, "
-                 ".rle). With "
-                 "--medial: .obj, .stl, .ply, or a model file with surfaces")
+                 ".rle). With --medial: .obj, .stl, .ply, or a model file with surfaces")
       .required();
   command.addOption(
       "-o,--out,out", options->out,
