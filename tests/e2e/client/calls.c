@@ -12,6 +12,14 @@ static void tell(const char* what, int worked) {
   printf("%s: %s\n", what, worked ? "ok" : *error.code != '\0' ? error.code : "no");
 }
 
+/* Returns the size of a column. A program passes over types that it does not know. */
+static size_t sizeOf(const char* type) {
+  static const char* const known[] = {"f8", "f4", "u8", "u4", "i4", "s96"};
+  for (size_t i = 0; i < sizeof known / sizeof *known; ++i)
+    if (strcmp(type, known[i]) == 0) return (size_t)atoi(type + 1);
+  return 0;
+}
+
 /* Reads each column of the newest rows of a stream, as a program does that trusts the description. */
 static void readStream(hapticd_client* c, int stream) {
   const hapticd_column* columns = NULL;
@@ -25,8 +33,8 @@ static void readStream(hapticd_client* c, int stream) {
     unsigned sum = 0;
     for (long r = 0; r < got; ++r)
       for (long i = 0; i < count; ++i) {
-        const size_t size = strcmp(columns[i].type, "s96") == 0 ? 96 : (size_t)atoi(columns[i].type + 1);
-        for (size_t b = 0; b < size && size <= 96; ++b)
+        const size_t size = sizeOf(columns[i].type);
+        for (size_t b = 0; b < size; ++b)
           sum += (unsigned char)rows[(size_t)r * bytes + columns[i].offset + b] + (unsigned char)*columns[i].name;
       }
     if (sum == 1) printf("a sum of 1\n");
