@@ -36,7 +36,6 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using importing::PressPlace;
 
-const Vector3d kRest(0, 0, 0.09);    ///< [m] where the simulated arm holds its tip in the world
 constexpr double kBeforeTip = 0.04;  ///< [m] distance from there to the model
 constexpr double kLarge = 0.5;       ///< [m] of a larger model the arm reaches only a part
 constexpr double kSmall = 0.005;     ///< [m] a smaller model is hard to find with the tip
@@ -45,6 +44,11 @@ constexpr double kStiffness = 800;   ///< [N/m] of a rigid model, as the shipped
 constexpr double kPress = 0.004;     ///< [m] how far the hand presses: with about 1 N, which the motors can hold
 constexpr double kOffMiddle = 0.15;  ///< [m] how far beside the middle the arm can press
 constexpr double kDeep = 0.03;       ///< [m] how far behind the side it can
+
+/// Returns where the simulated arm holds its tip in the world [m].
+Vector3d restOfTip() {
+  return {0, 0, 0.09};
+}
 
 /// What the scene says of a model.
 struct ModelFacts {
@@ -80,7 +84,7 @@ double stiffnessFor(const std::string& warnings) {
   constexpr double kStiffest = 3000;
   const std::size_t at = warnings.find(kAdvice), end = warnings.find(" keeps the tip inside");
   if (at == std::string::npos || end == std::string::npos) return kStiffness;
-  const double advised = std::atof(warnings.c_str() + at + kAdvice.size());
+  const double advised = std::strtod(warnings.c_str() + at + kAdvice.size(), nullptr);
   return advised > kStiffness && advised <= kStiffest ? advised : kStiffness;
 }
 
@@ -146,7 +150,7 @@ std::string sizeText(const Vector3d& size) {
 Vector3d positionOf(const PressPlace& place) {
   const Vector3d middle = place.middleOfSide(), aside = place.point - middle;
   const bool far = aside.norm() > kOffMiddle || -aside.dot(place.normal) > kDeep;
-  return kRest - kBeforeTip * place.normal - (far ? place.point : middle);
+  return restOfTip() - kBeforeTip * place.normal - (far ? place.point : middle);
 }
 
 std::string handLines(const PressPlace& place, const Vector3d& position) {
@@ -158,7 +162,7 @@ std::string handLines(const PressPlace& place, const Vector3d& position) {
       "frame\n"
       "# of the arm has its origin at z = 0.09 of the world. With --view the hand follows the mouse: drag the tip.\n"
       "hand: {{script: press, center: {}, normal: {}, radius: 0, rise: {}, rate: 0.5}}\n",
-      listOf(position + place.point - kRest), listOf(place.normal), withDigits(rise, 3));
+      listOf(position + place.point - restOfTip()), listOf(place.normal), withDigits(rise, 3));
 }
 
 /// Returns a line of the parameters, or one that has no effect before its # is removed.
