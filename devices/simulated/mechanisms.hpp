@@ -7,6 +7,15 @@
 
 namespace hapticd::simulated {
 
+/// Calls add(direction, excess [rad] or [m]) for each joint that is beyond its limits.
+template <class Vector, class Add>
+void addLimits(const kinematics::JointLimits& limits, const Vector& q, const Add& add) noexcept {
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (q[i] > limits.max[i]) add(Vector::Unit(q.size(), i), q[i] - limits.max[i]);
+    if (q[i] < limits.min[i]) add(Vector::Unit(q.size(), i), q[i] - limits.min[i]);
+  }
+}
+
 /// A PHANToM with the mass of a hand at its tip.
 class PhantomMechanism {
  public:
@@ -21,10 +30,7 @@ class PhantomMechanism {
 
   template <class Add>
   void stops(const Vector& q, const Add& add) const noexcept {
-    for (int i = 0; i < 3; ++i) {
-      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(i), q[i] - arm_.limits().max[i]);
-      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(i), q[i] - arm_.limits().min[i]);
-    }
+    addLimits(arm_.limits(), q, add);
     const double opening = q[2] - q[1];
     const Vector both(0, -1, 1);
     if (opening > arm_.largestOpening()) add(both, opening - arm_.largestOpening());
@@ -56,11 +62,9 @@ class DeltaMechanism {
 
   template <class Add>
   void stops(const Vector& q, const Add& add) const noexcept {
-    for (int i = 0; i < 3; ++i) {
-      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(i), q[i] - arm_.limits().max[i]);
-      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(i), q[i] - arm_.limits().min[i]);
-      if (!meets_) add(Vector::Unit(i), q[i] - last_[i]);  // the rods hold the upper arms back
-    }
+    addLimits(arm_.limits(), q, add);
+    if (meets_) return;
+    for (int i = 0; i < 3; ++i) add(Vector::Unit(i), q[i] - last_[i]);  // the rods hold the upper arms back
   }
 
   Matrix M = Matrix::Zero(), J = Matrix::Zero();
@@ -89,10 +93,7 @@ class ChainMechanism {
 
   template <class Add>
   void stops(const Vector& q, const Add& add) const noexcept {
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(q.size(), i), q[i] - arm_.limits().max[i]);
-      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(q.size(), i), q[i] - arm_.limits().min[i]);
-    }
+    addLimits(arm_.limits(), q, add);
   }
 
   Matrix M;
