@@ -21,69 +21,10 @@
 #include "output_of.hpp"
 #include "record/flight_ring.hpp"
 #include "record/recording_file.hpp"
+#include "sample_recording.hpp"
 
 namespace hapticd::record {
 namespace {
-
-struct Row {
-  uint64_t tick;
-  double x;
-  float y;
-  int32_t status;
-};
-
-std::vector<StreamSpec> specs(uint64_t ring_rows = 100) {
-  StreamSpec ticks, events;
-  ticks.name = "ticks";
-  ticks.layout.add("tick", ColumnType::kCount, "", "number");
-  ticks.layout.add("x", ColumnType::kReal, "m", "a place");
-  ticks.layout.add("y", ColumnType::kReal32, "us", "a time");
-  ticks.layout.add("status", ColumnType::kInt, "", "an answer");
-  ticks.ring_rows = ring_rows;
-  events.name = "events";
-  events.layout.add("tick", ColumnType::kCount, "", "number");
-  events.layout.add("kind", ColumnType::kWord, "", "what");
-  events.ring_rows = ring_rows;
-  return {ticks, events};
-}
-
-About about() {
-  return {"{\"columns\": " + columnsJson(specs()) + "}", "hapticd: 1\n# \xc3\xa9\n"};
-}
-
-Row rowOf(uint64_t tick) {
-  const auto t = static_cast<double>(tick);
-  return {tick, 0.5 * t, static_cast<float>(0.25 * t), -static_cast<int32_t>(tick % 7)};
-}
-
-std::string temporary(const char* name) {
-  return testing::TempDir() + name + std::to_string(getpid());
-}
-
-void expectRows(const RecordedStream& stream, uint64_t first, uint64_t count) {
-  ASSERT_EQ(stream.rows(), count);
-  ASSERT_EQ(stream.columns().size(), 4u);
-  for (uint64_t i = 0; i < count; ++i) {
-    const Row wanted = rowOf(first + i);
-    ASSERT_EQ(stream.number(i, *stream.find("tick")), static_cast<double>(wanted.tick)) << "row " << i;
-    ASSERT_EQ(stream.number(i, *stream.find("x")), wanted.x);
-    ASSERT_EQ(stream.number(i, *stream.find("y")), wanted.y);
-    ASSERT_EQ(stream.number(i, *stream.find("status")), wanted.status);
-  }
-}
-
-/// Writes `count` rows in pieces of `piece`, the events every tenth tick.
-void write(RecordingFile& file, uint64_t from, uint64_t count, uint64_t piece) {
-  std::vector<Row> rows;
-  for (uint64_t tick = from; tick < from + count; ++tick) {
-    rows.push_back(rowOf(tick));
-    if (rows.size() < piece && tick + 1 < from + count) continue;
-    ASSERT_TRUE(file.append(0, reinterpret_cast<const std::byte*>(rows.data()), rows.size()));
-    const uint64_t event[2] = {tick, 3};
-    ASSERT_TRUE(file.append(1, reinterpret_cast<const std::byte*>(event), 1));
-    rows.clear();
-  }
-}
 
 /// What an HDF5 library that is not ours reads: "rows first-tick last-tick sum-of-x events"; "" where there is none.
 std::string readByPython(const std::string& file) {
@@ -104,23 +45,6 @@ TEST(RecordingFile, GivesBackEveryRowWhateverTheSizeOfChunksAndPieces) {
       EXPECT_FALSE((*recording)->blackBox());
       expectRows(*(*recording)->stream("ticks"), 0, 500);
     }
-}
-
-TEST(RecordingFile, ARowStaysWhileThreeOtherPlacesAreRead) {
-  const std::string name = temporary("pages");
-  auto file = RecordingFile::create(name, specs(), about(), sizeof(Row));  // one row in a chunk, so one in a page
-  ASSERT_TRUE(file);
-  write(**file, 0, 20, 1);
-  ASSERT_TRUE((*file)->close());
-  const auto recording = Recording::open(name);
-  ASSERT_TRUE(recording) << recording.error();
-  const RecordedStream& ticks = *(*recording)->stream("ticks");
-  for (uint64_t i = 0; i < 4; ++i) ticks.row(i);
-  const std::byte* again = ticks.row(0);
-  for (uint64_t i = 4; i < 7; ++i) ticks.row(i);
-  uint64_t tick = 0;
-  std::memcpy(&tick, again, sizeof tick);
-  EXPECT_EQ(tick, 0u);
 }
 
 TEST(RecordingFile, IsReadByAnotherLibraryThroughAllLevelsOfTheIndex) {
