@@ -59,6 +59,12 @@ Around onFace(const Model& model, const Hit& hit) noexcept {
   return a;
 }
 
+/// Returns the outward normal of a face at a point of one of its edges: parameter t, place q.
+Vector3d normalBeside(const Model& model, const Coedge& coedge, double t, const Vector3d& q) noexcept {
+  const FaceShape& face = model.face(coedge.face);
+  return face.kind <= SurfaceKind::kTorus ? faceNormal(face, q) : coedgeNormal(model.geometry(), coedge, t);
+}
+
 Around onEdge(const Model& model, const Hit& hit, std::uint32_t face) noexcept {
   const Part& part = model.part();
   const Edge& edge = part.edges[edgeOf(model, hit)];
@@ -83,12 +89,10 @@ Around onEdge(const Model& model, const Hit& hit, std::uint32_t face) noexcept {
       return a;
     }
   }
-  a.normal = coedgeNormal(model.geometry(), own, t);
-  if (a.open) return a;
   Vector3d sum = Vector3d::Zero();
-  for (std::uint32_t c = edge.first_coedge; c != kNone; c = part.coedges[c].next)
-    sum += coedgeNormal(model.geometry(), part.coedges[c], t);
-  if (sum.squaredNorm() > 0) a.normal = sum.normalized();
+  for (std::uint32_t c = edge.first_coedge; c != kNone && !a.open; c = part.coedges[c].next)
+    sum += normalBeside(model, part.coedges[c], t, hit.point);
+  a.normal = sum.squaredNorm() > 0 ? sum.normalized() : normalBeside(model, own, t, hit.point);
   return a;
 }
 

@@ -82,6 +82,7 @@ Tracer::Tracer(const Model& model) : search_(model) {}
 
 void Tracer::reset() noexcept {
   search_.reset();
+  outside_.reset();
   held_.place = kNone;
   contact_ = {};
   has_last_ = false;
@@ -102,8 +103,33 @@ Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
   return {nearest.place, faceOf(model(), nearest.hit, held_.face), nearest.hit};
 }
 
-/// Returns the nearest foot of all bodies. A probe that is outside the nearest body may be inside another body whose
-/// surface is farther away. Then the foot is on that body, or on the one with the greatest depth if there are several.
+/// A probe that is outside the nearest body may be inside another one whose surface is farther away. Then `foot` becomes
+/// the foot on that body, or on the one with the greatest depth if there are several. @param proved `foot` is certain.
+/// Returns whether it still is.
+bool Tracer::preferDeepestAround(const Vector3d& p, bool proved, Foot& foot) noexcept {
+  std::array<std::uint32_t, kMostAround> around{};
+  const int count = search_.around(p, around.data(), kMostAround);
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t place = around[static_cast<std::size_t>(i)];
+    if (place == nearest_.place && !(foot.depth > 0)) continue;
+    if (outside_.isOutside(place, p)) continue;
+    const Nearest other = search_.nearestOf(place, kNone, p, Hit{}, budget_);
+    foot.evaluations += other.elements;
+    if (!other.found()) continue;
+    const Held held = heldAt(other);
+    const Foot inside = describe(model(), place, held.hit, held.face, p);
+    if (!(inside.depth > 0) && other.proved) outside_.keep(place, p, other.distance());
+    if (!(inside.depth > std::max(foot.depth, 0.0))) continue;
+    const int evaluations = foot.evaluations;
+    foot = inside;
+    foot.evaluations = evaluations;
+    nearest_ = held;
+    proved = other.proved;
+  }
+  return proved;
+}
+
+/// Returns the nearest foot of all bodies, or a foot at which the probe is deeper inside.
 Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   const Nearest& found = search_.nearest(p, budget_);
   Foot foot;
@@ -116,22 +142,7 @@ Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   bool proved = found.proved;
   foot.evaluations = found.elements;
   foot.residual = proved ? 0 : std::max(0.0, foot.distance - found.others);
-  if (model().placements().size() > 1 && !(foot.depth > 0)) {
-    std::array<std::uint32_t, kMostAround> around{};
-    const int count = search_.around(p, around.data(), kMostAround);
-    for (int i = 0; i < count; ++i) {
-      const std::uint32_t place = around[static_cast<std::size_t>(i)];
-      if (place == nearest_.place && !(foot.depth > 0)) continue;
-      const Nearest other = search_.nearestOf(place, kNone, p, Hit{}, budget_);
-      if (!other.found()) continue;
-      const Held held = heldAt(other);
-      const Foot inside = describe(model(), place, held.hit, held.face, p);
-      if (!(inside.depth > std::max(foot.depth, 0.0))) continue;
-      foot = inside;
-      nearest_ = held;
-      proved = other.proved;
-    }
-  }
+  if (model().placements().size() > 1 && !(foot.depth > 0)) proved = preferDeepestAround(p, proved, foot);
   foot.status = proved ? FootStatus::kNearest : FootStatus::kDegraded;
   return foot;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "kernels/brep/contact/outside_bodies.hpp"
 #include "kernels/brep/search/search.hpp"
 #include "kernels/contact/contact_state.hpp"
 
@@ -60,6 +61,7 @@ class Tracer {
   void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;
   bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
+  bool preferDeepestAround(const Eigen::Vector3d& p, bool proved, contact::Foot& foot) noexcept;
   /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.
   const contact::Foot& nearestOnce(const Eigen::Vector3d& p) noexcept;
   bool mayBeThroughGap(double way) const noexcept;
@@ -67,6 +69,7 @@ class Tracer {
   void count(const contact::Foot& foot) noexcept;
 
   Search search_;
+  OutsideBodies outside_;
   contact::ContactState contact_;
   Held held_;
   Held nearest_;        ///< result of nearestFelt() in this tick

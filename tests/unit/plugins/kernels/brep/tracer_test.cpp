@@ -148,5 +148,35 @@ TEST(Contact, ShellsAreFeltFromTheSideTheyWereEntered) {
   }
 }
 
+/// A probe in the box of an L, and outside of the L, stays outside while it moves less than the distance to it: no tick
+/// needs to search the L again. This must not change any foot, also where the bodies overlap.
+TEST(Assembly, BodiesThatStayOutsideAreNotSearchedAgain) {
+  Part part = samples::bracket();
+  for (const double offset : {0.004, 0.015}) {
+    part.instances.push_back(part.instances[0]);
+    for (const std::size_t at : {3U, 7U}) part.instances.back().pose[at] = offset;
+  }
+  const Model model(std::move(part));
+  const Vector3d middle = model.bounds().center(), half = 0.5 * model.bounds().diagonal();
+  Tracer walking(model), cold(model);
+  std::mt19937 random(4);
+  std::normal_distribution<double> step(0, 1e-4);
+  Vector3d p = middle;
+  int evaluations = 0, cold_evaluations = 0, inside = 0;
+  for (int i = 0; i < 100000; ++i) {
+    p += Vector3d(step(random), step(random), step(random));
+    if (((p - middle).cwiseAbs() - half).maxCoeff() > 0.002) p = middle + 0.5 * (p - middle);
+    cold.reset();
+    const Foot foot = walking.nearest(p), known = cold.nearest(p);
+    ASSERT_NEAR(foot.depth, known.depth, 1e-15) << p.transpose();
+    inside += foot.depth > 0;
+    evaluations += foot.evaluations;
+    cold_evaluations += known.evaluations;
+  }
+  EXPECT_GT(inside, 10000);
+  EXPECT_LT(inside, 90000);
+  EXPECT_LT(evaluations, 0.5 * cold_evaluations);
+}
+
 }  // namespace
 }  // namespace hapticd::brep
