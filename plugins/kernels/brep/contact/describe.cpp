@@ -32,11 +32,6 @@ struct Around {
   bool sharp = false;        ///< true if the normal jumps there
 };
 
-std::uint32_t edgeOf(const Model& model, const Hit& hit) noexcept {
-  const std::uint32_t i = hit.element.index();
-  return hit.element.kind() == ElementKind::kPiece ? model.piece(i).edge : i;
-}
-
 /// Returns the coedge of an edge on a face, or the edge's first coedge if the edge is not on the face.
 const Coedge& coedgeOn(const Part& part, const Edge& edge, std::uint32_t face) noexcept {
   for (std::uint32_t c = edge.first_coedge; c != kNone; c = part.coedges[c].next)
@@ -67,7 +62,7 @@ Vector3d normalBeside(const Model& model, const Coedge& coedge, double t, const 
 
 Around onEdge(const Model& model, const Hit& hit, std::uint32_t face) noexcept {
   const Part& part = model.part();
-  const Edge& edge = part.edges[edgeOf(model, hit)];
+  const Edge& edge = part.edges[model.edgeOf(hit.element)];
   Around a;
   a.inside = false;
   if (edge.first_coedge == kNone) return a;
@@ -198,7 +193,7 @@ std::uint32_t faceOf(const Model& model, const Hit& hit, std::uint32_t before) n
     case ElementKind::kLeaf:
       return model.leaf(i).face;
     default: {
-      const Edge& edge = model.part().edges[edgeOf(model, hit)];
+      const Edge& edge = model.part().edges[model.edgeOf(hit.element)];
       return edge.first_coedge == kNone ? kNone : coedgeOn(model.part(), edge, before).face;
     }
   }

@@ -103,9 +103,9 @@ Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
   return {nearest.place, faceOf(model(), nearest.hit, held_.face), nearest.hit};
 }
 
-/// A probe that is outside the nearest body may be inside another one whose surface is farther away. Then `foot` becomes
-/// the foot on that body, or on the one with the greatest depth if there are several. @param proved `foot` is certain.
-/// Returns whether it still is.
+/// A probe that is outside the nearest body may be inside another one whose surface is farther away. Then `foot`
+/// becomes the foot on that body, or on the one with the greatest depth if there are several. @param proved `foot` is
+/// certain. Returns whether it still is.
 bool Tracer::preferDeepestAround(const Vector3d& p, bool proved, Foot& foot) noexcept {
   std::array<std::uint32_t, kMostAround> around{};
   const int count = search_.around(p, around.data(), kMostAround);

@@ -110,6 +110,14 @@ class Model {
   const RecognisedEdge& recognised(std::uint32_t index) const noexcept { return recognised_[index]; }
   const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
   const CurvePiece& piece(std::uint32_t index) const noexcept { return pieces_[index]; }
+  /// [any] Returns the edge (index in the part) of which an element is all or a piece, or kNone if it is not of an
+  /// edge.
+  std::uint32_t edgeOf(Element element) const noexcept {
+    const ElementKind kind = element.kind();
+    if (kind == ElementKind::kPiece) return pieces_[element.index()].edge;
+    const bool is_edge = kind == ElementKind::kLine || kind == ElementKind::kCircle || kind == ElementKind::kPole;
+    return is_edge ? element.index() : kNone;
+  }
   std::size_t leafCount() const noexcept { return leaves_.size(); }
   std::size_t pieceCount() const noexcept { return pieces_.size(); }
   const CornerNormal& vertexNormal(std::uint32_t vertex) const noexcept { return vertex_normals_[vertex]; }

@@ -228,7 +228,7 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
 bool Search::reuseLast(const Vector3d& p, double way, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - way;
-  if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < others)) return false;
+  if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < others) || mayEnterBeside(p, run)) return false;
   last_.hit = run.best.hit;
   last_.others = others;
   last_.nodes = 0;
@@ -280,14 +280,37 @@ void Search::begin(const Vector3d& p, Run& run) noexcept {
   run.first_least2 = lowerBoundOf(d2, examination);
 }
 
-void Search::finish(Run& run) noexcept {
+/// True if the best foot is on an edge and a face beside it may be nearer.
+bool Search::mayEnterBeside(const Vector3d& p, const Run& run) const noexcept {
+  const std::uint32_t edge = model_.edgeOf(run.best.hit.element);
+  if (edge == kNone) return false;
+  const Part& part = model_.part();
+  const Vector3d p_body = model_.placements()[run.best.place].toBody(p);
+  Hit nearer;
+  nearer.d2 = run.best.hit.d2 * (1 + 3 * kRounding);
+  const double limit2 = nearer.d2;
+  for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
+    faceFoot(model_.face(part.coedges[c].face), p_body, nearer);
+  return nearer.d2 < limit2;
+}
+
+/// Returns Nearest::others for the best foot. A face whose foot is outside its trim has no distance of its own in
+/// `others2`: its edges have, and its foot may enter the trim as soon as the probe moves. It is then not nearer than
+/// the edges were, less that motion and the gaps of the file. That holds for the faces beside the best edge only until
+/// one of them is entered, which mayEnterBeside() finds out if they have closed forms.
+double Search::othersOf(const Run& run) const noexcept {
+  const double others = std::sqrt(std::min(run.others2, run.open2));
+  const std::uint32_t edge = model_.edgeOf(run.best.hit.element);
+  if (edge == kNone) return others;
+  const Part& part = model_.part();
+  for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
+    if (model_.face(part.coedges[c].face).kind > SurfaceKind::kTorus) return 0;
+  return std::max(others - part.tolerance, 0.0);
+}
+
+void Search::finish(Run& run) const noexcept {
   Nearest& best = run.best;
-  // A face whose foot is outside its trim has no distance of its own in `others2`; only its edges have. If the best hit
-  // is on an edge, the foot of such a face may enter its trim as soon as the probe moves. So no bound of the other
-  // elements is known for the next tick.
-  const ElementKind kind = best.hit.element.kind();
-  const bool is_edge = kind != ElementKind::kFace && kind != ElementKind::kLeaf && kind != ElementKind::kTriangle;
-  best.others = is_edge ? 0 : std::sqrt(std::min(run.others2, run.open2));
+  best.others = othersOf(run);
   best.proved = best.found() && !best.exhausted && !(run.open2 < best.hit.d2);
 }
 

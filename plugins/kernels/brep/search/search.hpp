@@ -27,7 +27,8 @@ struct SearchBudget {
 struct Nearest {
   Hit hit;                      ///< nearest point, in the frame of its body
   std::uint32_t place = kNone;  ///< index in Model::placements(); kNone if nothing was found
-  /// [m] Lower bound of the distance from the probe to every other element.
+  /// [m] Lower bound of the distance from the probe to every other element. If `hit` is on an edge, the faces beside it
+  /// are not among these.
   double others = 0;
   bool proved = false;     ///< `hit` is certainly the nearest point of all
   bool exhausted = false;  ///< the budget ended before the search was finished
@@ -151,7 +152,9 @@ class Search {
   bool mayHaveFoot(Element element, const Eigen::Vector3d& p, Examination& examination) const noexcept;
   double evaluate(Element element, const Eigen::Vector3d& p, Examination& examination, Hit& hit) const noexcept;
   double evaluateLeaf(Element element, const Eigen::Vector3d& p, Examination& examination, Hit& hit) const noexcept;
-  static void finish(Run& run) noexcept;
+  bool mayEnterBeside(const Eigen::Vector3d& p, const Run& run) const noexcept;
+  double othersOf(const Run& run) const noexcept;
+  void finish(Run& run) const noexcept;
 
   const Model& model_;
   Nearest last_;

@@ -65,6 +65,30 @@ TEST(Search, SkipsChangeNoAnswer) {
   EXPECT_GT(skipped, 50000);
 }
 
+/// So do ticks beside an edge, until the foot may enter one of its two faces.
+TEST(Search, SkipsBesideAnEdgeChangeNoAnswer) {
+  const Model model(samples::cappedCylinder(10, 20));
+  Search walking(model), cold(model);
+  std::mt19937 random(3);
+  std::normal_distribution<double> step(0, 1e-4);
+  const Vector3d outside(0, 0.013, 0.023);  // of the upper rim, far from the seam
+  Vector3d p = outside;
+  int skipped = 0, entered = 0;
+  for (int i = 0; i < 200000; ++i) {
+    p += Vector3d(step(random), step(random), step(random));
+    if ((p - outside).norm() > 0.005) p = outside;
+    cold.reset();
+    const Nearest& found = walking.nearest(p);
+    const bool on_rim = model.edgeOf(found.hit.element) != kNone;
+    skipped += on_rim && found.nodes == 0;
+    entered += !on_rim;
+    ASSERT_NEAR(found.distance(), cold.nearest(p).distance(), 1e-15);
+    ASSERT_EQ(found.hit.element, cold.last().hit.element) << p.transpose();
+  }
+  EXPECT_GT(skipped, 100000);
+  EXPECT_GT(entered, 1000);
+}
+
 /// A probe that rests far away gathers rows around it. An unused place among them must not look as near as they do.
 TEST(Search, FindsThePartFromAnyDistance) {
   const Model model(samples::cappedCylinder(10, 20));
