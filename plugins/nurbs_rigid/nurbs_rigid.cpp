@@ -109,7 +109,11 @@ hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_c
   const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
   const contact::WallForce wall = contact::wallForce(law, depth, -velocity.dot(touch.normal));
   Eigen::Vector3d rub = Eigen::Vector3d::Zero();
-  if (index < friction_.size()) rub = along(touch, velocity, wall.force, friction_[index]);
+  if (index < friction_.size()) {
+    const contact::FrictionLaw friction{friction_static_, friction_dynamic_, stiffness_, viscosity_};
+    rub = friction_[index].step(friction, touch.foot.point, touch.normal, wall.force, velocity);
+    stored_ += friction_[index].energy(friction);
+  }
   Eigen::Map<Eigen::Vector3d>(contact.force) = wall.force * touch.normal + rub;
   contact.stiffness = std::isfinite(wall.stiffness) ? wall.stiffness : stiffness_;
   stored_ += contact::wallEnergy(law, depth);
@@ -136,13 +140,6 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
     pressing.along_damping = viscosity_;
   }
   body_->remember(index, pressing);
-}
-
-/// Returns the force along the surface: dry friction and drag.
-Eigen::Vector3d NurbsRigid::along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
-                                  contact::Friction& friction) const noexcept HSP_RT {
-  const contact::FrictionLaw law{friction_static_, friction_dynamic_, stiffness_, viscosity_};
-  return friction.step(law, touch.foot.point, touch.normal, wall_force, velocity);
 }
 
 std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model) {

@@ -77,8 +77,6 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
   void remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,
                 const Eigen::Vector3d& rub) noexcept HSP_RT;
-  Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
-                        contact::Friction& friction) const noexcept HSP_RT;
   /// The parameter ranges of a surface and their lengths, for the bumps along u and v.
   struct Extent {
     Eigen::Array2d lo, range;  ///< start and size of the range of (u, v)
@@ -105,7 +103,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   std::vector<contact::Friction> friction_;  ///< one per probe; empty if there is no friction and no viscosity
   std::vector<Extent> extents_;              ///< by surface; empty for meshes, which have no bumps
   std::optional<DynamicBody> body_;          ///< only for motion: dynamic
-  double stored_ = 0;                        ///< [J] energy stored in the wall
+  double stored_ = 0;                        ///< [J] energy stored in the wall and in the springs of friction
   hsp_ext_energy energy_extension_{};
 };
 

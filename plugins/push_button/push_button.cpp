@@ -12,7 +12,9 @@ namespace {
 // least component of the normal along the axis, of either sign: on steeper flanks a push hardly moves the button
 constexpr double kSteepest = 0.1;
 
-constexpr double kGone = 0.05;  // [s] the host counts an arm as lost after this time without a sample
+// [s] Without a sample a finger presses on as it did for kBlind. Then its press fades, else another finger would bear
+// the whole detent at once. After kGone, when the host counts the arm as lost, it presses nothing.
+constexpr double kBlind = 0.025, kGone = 0.05;
 
 /// Returns the flags (HSP_OUT_*) of a step of the button. @param button the button after the step
 uint32_t clickOf(const dynamics::ButtonState& button, const dynamics::ButtonState::Step& step) noexcept HSP_RT {
@@ -36,7 +38,7 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   turn_ = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
   button_.reset();
   last_x2_ = stored_ = 0;
-  blind_for_.assign(std::max(activation.max_probes, 1u), 0);
+  fingers_.assign(std::max(activation.max_probes, 1u), Finger{});
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.reserve(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
@@ -53,30 +55,33 @@ void PushButton::reset() noexcept HSP_RT {
   TracedShape::reset();
   button_.reset();
   stored_ = 0;
-  std::fill(blind_for_.begin(), blind_for_.end(), 0);
+  std::fill(fingers_.begin(), fingers_.end(), Finger{});
 }
 
 /// Lists the probes that may press, measured on the cap at each probe. If the cap's normal is tilted, its stiffness
-/// counts with the square of the normal's component along the axis. Returns false if it is not known whether the button
-/// is pressed, since the sample of a finger is lost; an arm that gives no sample for longer is gone, and presses
-/// nothing.
-bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
+/// counts with the square of the normal's component along the axis.
+void PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
   presses_.clear();
-  bool blind = false, pressed = false;
   for (uint32_t i = 0; i < step.count; ++i) {
     const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
-    double& blind_for = blind_for_[i];
-    blind_for = (probe.flags & HSP_IN_INVALID) != 0 ? blind_for + step.dt_s : 0;
-    blind |= blind_for > 0 && blind_for <= kGone;
+    Finger& finger = fingers_[i];
     hsp_contact unused{};
     const Touch touch = trace(probe, step, unused);
-    const double along = -touch.normal.dot(inward_);
-    if (!touch.traced || std::abs(along) < kSteepest) continue;
-    const double travel = button_.position() + touch.depth / along;
-    presses_.push_back({stiffness_ * along * along, travel, along < 0});
-    pressed |= along > 0 && travel > 0;
+    const bool blind = (probe.flags & HSP_IN_INVALID) != 0;
+    finger.blind_for = blind ? finger.blind_for + step.dt_s : 0;
+    if (!blind) finger.press = pressOf(touch);
+    const double share = std::clamp((kGone - finger.blind_for) / (kGone - kBlind), 0.0, 1.0);
+    dynamics::ButtonPress press = finger.press;
+    press.stiffness *= share;
+    if (press.stiffness > 0) presses_.push_back(press);
   }
-  return pressed || !blind;
+}
+
+/// Returns the press of a probe; without stiffness if the probe cannot move the button.
+dynamics::ButtonPress PushButton::pressOf(const Touch& touch) const noexcept HSP_RT {
+  const double along = -touch.normal.dot(inward_);
+  if (!touch.traced || std::abs(along) < kSteepest) return {};
+  return {stiffness_ * along * along, button_.position() + touch.depth / along, along < 0};
 }
 
 /// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of
@@ -84,8 +89,10 @@ bool PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
 hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
   uint32_t clicked = 0;  // HSP_OUT_* of a click in this step
   const MovingFrame before = MovingFrame::of(*step.pose);
-  if (step.dt_s > 0 && listPresses(step))  // if a sample is lost, the button stays where it is
+  if (step.dt_s > 0) {
+    listPresses(step);
     clicked = clickOf(button_, button_.step(presses_, *curve_));
+  }
   const MovingFrame now = frame(step.dt_s);
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);

@@ -40,7 +40,13 @@ class PushButton final : public TracedShape {
   const void* extension(const char* name);
 
  private:
-  bool listPresses(const hsp_step& step) noexcept HSP_RT;
+  /// One probe, which may press.
+  struct Finger {
+    dynamics::ButtonPress press;  ///< at its last good sample
+    double blind_for = 0;         ///< [s] time for which it has had no sample
+  };
+  void listPresses(const hsp_step& step) noexcept HSP_RT;
+  dynamics::ButtonPress pressOf(const Touch& touch) const noexcept HSP_RT;
   MovingFrame frame(double dt) noexcept HSP_RT;
 
   std::array<double, 3> axis_{};
@@ -54,7 +60,7 @@ class PushButton final : public TracedShape {
   Eigen::Vector3d rest_{0, 0, 0};        // position of the model frame with the button at rest, in the world
   Eigen::Quaterniond turn_{1, 0, 0, 0};  // orientation of the model, in the world
   double last_x2_ = 0, stored_ = 0;
-  std::vector<double> blind_for_;  // [s] time for which each probe has had no sample
+  std::vector<Finger> fingers_;  // by probe
   std::optional<MovedProbes> probes_;
   hsp_ext_energy energy_extension_{};
 };

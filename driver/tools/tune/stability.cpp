@@ -71,6 +71,32 @@ void checkModel(const scene::Scene& scene, size_t index, const scene::Device& de
          text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
 }
 
+/// Warns of a damping that is not stable where the wall pushes with the whole force of the arm, even in a hand. The
+/// damping of a wall grows as its force does: lambda F / (k x0).
+void checkDamping(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
+                  document::Problems& problems) {
+  constexpr double kHand = 0.2;         // [kg] of a hand that holds the arm
+  constexpr double kJudged = 50;        // [N s/m] check judges a stronger damper by itself, at any depth
+  constexpr double kDepthScale = 1e-3;  // [m] if the scene gives none
+  const scene::Model& model = scene.models[index];
+  const scene::Value* damping = givenIn(model.parameters, "damping");
+  const double k = numberIn(model.parameters, "stiffness");
+  const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
+  if (model.plugin != "nurbs_rigid" || damping == nullptr || !(k > 0) || !(info.mass_kg > 0) || device.admittance)
+    return;
+  const double at_scale = k * numberIn(model.parameters, "depth_scale", kDepthScale);
+  const double there = damping->number * most / at_scale;
+  const double bound =
+      passivity::maxDampingAlone(info.mass_kg + kHand, windowOf(scene.servo.velocity), 1 / scene.servo.rate);
+  if (there <= bound || damping->number > kJudged) return;
+  document::report(problems, damping->place, "models[" + std::to_string(index) + "].parameters.damping",
+                   model.name + " damps with " + text(there) + " N s/m where it pushes with the " + text(most) +
+                       " N of " + device.name + ", because its damping grows with depth, and at " +
+                       text(scene.servo.rate) + " Hz an arm of " + text(info.mass_kg) + " kg in a hand of " +
+                       text(kHand) + " kg is stable up to " + text(bound) + " N s/m; expected at most " +
+                       text(roundedDown(damping->number * bound / there)) + " N s/m");
+}
+
 /// Warns of a force that the arm cannot sustain. Simulated arms are left out, because their motors cannot burn.
 void checkHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
   const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
@@ -144,8 +170,10 @@ document::Problems unstableSettings(const scene::Scene& scene, const scene::Devi
   const double period = 1 / scene.servo.rate;
   const double alone =
       info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;
-  for (size_t i = 0; i < scene.models.size() && i < stiffness.size(); ++i)
+  for (size_t i = 0; i < scene.models.size() && i < stiffness.size(); ++i) {
     checkModel(scene, i, device, info, alone, stiffness[i], problems);
+    checkDamping(scene, i, device, info, problems);
+  }
   const std::string file = scene.file.string();
   if (scene.servo.budget_us > period * 1e6)
     document::report(problems, file, 0, 0, "servo.budget_us",

@@ -14,6 +14,7 @@ namespace hapticd::tune {
 ///   - a stiffness above max_stiffness of the device, or above what the felt mass of the arm allows without damping at
 ///     this rate of the servo and with this window of the velocity estimator (Colgate & Schenkel 1997 give the bound
 ///     with damping),
+///   - a damping that grows with depth beyond what arm and hand allow at this rate,
 ///   - a force step of one encoder count that a hand feels as buzz,
 ///   - a budget longer than the period,
 ///   - a rate of the servo that differs from that of the device, and a device that should pace the servo but cannot,

@@ -59,6 +59,20 @@ TEST(Edges, OfABoxAreNoKicks) {
   EXPECT_GT(largest(sent), 1);
 }
 
+/// The spring of friction may store more than the wall: a stuck point 50 mm behind the hand, in a wall 7 mm deep.
+TEST(Friction, OfASoftWallGivesBackNoMoreThanItTook) {
+  Scenario scenario({.models = shipped("  - name: box\n    plugin: nurbs_rigid\n    parameters: {geometry: "
+                                       "HERE/models/box.yaml, stiffness: 150, exponent: 2, friction_static: 1.5, "
+                                       "friction_dynamic: 1.5}\n")});
+  const auto sent = scenario.run(2, [&](double t) {
+    const double along = t < 0.2 ? 0 : std::abs(std::remainder((t - 0.2) / 0.2, 2));  // 80 mm to and fro, each in 0.2 s
+    scenario.moveTo(Vector3d(0.08 * along - 0.04, 0.055 - std::min(0.012, 0.08 * t), 0));
+    return Nanoseconds{0};
+  });
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kNone);
+  EXPECT_GT(largest(sent), 5);
+}
+
 TEST(Snaps, OfAButtonAreNoKicks) {
   Scenario scenario(
       {.models = shipped("  - name: button\n    plugin: push_button\n    parameters: {geometry: "

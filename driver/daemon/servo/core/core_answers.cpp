@@ -182,7 +182,7 @@ bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
     const Vector3d p = model.claims.moves_itself ? model.frame.pointToModel(last_position_[i]) : ConstMap(in.position);
     model.energy.add(force, p, touches ? out.depth_m : 0, last);
   }
-  return model.energy.closeStep(dt);
+  return model.energy.closeStep(dt, model.shape->storedEnergy());
 }
 
 /// Returns the place of a model on which its force of the last tick acts.

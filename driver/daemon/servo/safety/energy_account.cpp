@@ -19,9 +19,10 @@ void EnergyAccount::add(const Eigen::Vector3d& force, const Eigen::Vector3d& pos
   last = {force, position, stored, true};
 }
 
-bool EnergyAccount::closeStep(double dt) noexcept HSP_RT {
-  // What friction and damping took cannot be given back, so it must not hide what is given later.
-  given_ = std::max(given_, -stored_);
+bool EnergyAccount::closeStep(double dt, double reported) noexcept HSP_RT {
+  // What friction and damping took cannot be given back, so it must not hide what is given later. But friction that
+  // sticks is a spring, which may store more than the wall.
+  given_ = std::max(given_, -std::max(stored_, reported));
   if (given_ > 0) given_ = std::max(0.0, given_ - kMostPower * dt);
   stored_ = 0;
   if (!std::isfinite(given_)) given_ = 0;

@@ -28,8 +28,9 @@ class EnergyAccount {
   void add(const Eigen::Vector3d& force, const Eigen::Vector3d& position, double depth, LastPush& last) noexcept HSP_RT;
 
   /// [rt] Call it after add() for all probes. @param dt [s] since the last step
+  /// @param reported [J] that the shape says it stores; it may give back no more of it than it got
   /// @return true if the surface has given too much
-  bool closeStep(double dt) noexcept HSP_RT;
+  bool closeStep(double dt, double reported = 0) noexcept HSP_RT;
 
   double given() const noexcept { return given_; }  ///< [J] energy given; < 0: it may give so much back
 

@@ -31,6 +31,13 @@ constexpr double kLeastSeconds = 3;
 constexpr uint64_t kMostTicks = 10'000;
 constexpr uint64_t kEnoughWaits = 1000;  ///< ticks with a wait, after which no more are needed
 
+/// [s] Returns how long the hands move at least. An arm under compliance control may begin to swing after a while.
+double leastSeconds(const scene::Scene& scene) {
+  const bool complies = std::any_of(scene.devices.begin(), scene.devices.end(),
+                                    [](const scene::Device& device) { return device.admittance.has_value(); });
+  return complies ? kMostSeconds : kLeastSeconds;
+}
+
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
@@ -50,6 +57,7 @@ class WalkLog final : public servo::TickLog {
   WalkLog(const scene::Scene& scene, const servo::World& world, double once)
       : telemetry_(scene, scene.servo.rate),
         once_(once),
+        least_(leastSeconds(scene)),
         begun_(processorSeconds()),
         boxes_(scene.models.size()),
         began_at_(scene.models.size()) {
@@ -91,7 +99,10 @@ class WalkLog final : public servo::TickLog {
     observeWaits(core);
     telemetry_.tick(t, dt, late, spent, core, arms);
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
-    for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
+    for (uint32_t i = 0; i < arms.size(); ++i) {
+      observeArm(i, core, *arms[i]);
+      walk_.arms[i].swing.add(t, arms[i]->probe().position);
+    }
     if (ticks_++ % kLookEvery == 0) late_ = processorSeconds() - begun_ > kMostProcessor;
     walk_.ticks = ticks_;
     const bool all =
@@ -100,7 +111,7 @@ class WalkLog final : public servo::TickLog {
     walk_.late = late_ && !walk_.whole;
     walk_.waited = walk_.waits >= kEnoughWaits && !walk_.whole;
     // A model that moves by itself may still come to a hand that waits for it.
-    if (!late_ && !walk_.waited && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
+    if (!late_ && !walk_.waited && !(walk_.whole && (all || !moves_) && t >= least_)) return;
     ended_ = true;
     loop_->stop();
   }
@@ -186,7 +197,7 @@ class WalkLog final : public servo::TickLog {
   }
 
   servo::Telemetry telemetry_;
-  double once_, begun_;
+  double once_, least_, begun_;
   std::vector<std::optional<Eigen::AlignedBox3d>> boxes_;
   std::vector<Vector3d> began_at_;
   std::vector<servo::Clips> clips_;
@@ -223,9 +234,10 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
   loop.run();
   Walk walk = log.take(world.core());
   walk.period = 1 / scene.servo.rate;
-  for (const auto& arm : arms) {
-    walk.limiters.push_back(arm->limiter());
-    arm->stop();
+  for (size_t i = 0; i < arms.size(); ++i) {
+    walk.limiters.push_back(arms[i]->limiter());
+    walk.arms[i].rate = arms[i]->info().rate_hz;
+    arms[i]->stop();
   }
   return walk;
 }

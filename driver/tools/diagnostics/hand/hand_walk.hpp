@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "description/scene.hpp"
+#include "diagnostics/hand/swing.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/telemetry/stop_counts.hpp"
 #include "world/world.hpp"
@@ -41,6 +42,8 @@ struct WalkedArm {
   uint32_t nearest = 0;       ///< index of the model at the least distance
   uint32_t end = 0;           ///< number of the first joint that was at an end of its range there, from 1; 0 for none
   servo::StopCounts stops;    ///< ticks in which each joint was at an end of its range
+  Swing swing;                ///< of the tip
+  double rate = 0;            ///< [Hz] of the arm's samples; 0: unknown
 };
 
 struct Walk {

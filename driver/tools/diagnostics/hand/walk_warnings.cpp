@@ -12,6 +12,7 @@
 #include "diagnostics/hand/hand_script.hpp"
 #include "diagnostics/hand/hand_walk.hpp"
 #include "diagnostics/hand/radius_advice.hpp"
+#include "diagnostics/hand/swing_warnings.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "diagnostics/scene/trial_end.hpp"
 
@@ -265,6 +266,7 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   const auto hand = handScriptOf(scene.devices[index]);
   if (!hand || !hand->moves()) return;
   if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
+  if (reportSwing(scene, index, seen, warnings)) return;
   if (!seen.touched) {
     const bool silent = std::find(walk.silenced.begin(), walk.silenced.end(), true) != walk.silenced.end();
     const bool all_enabled =

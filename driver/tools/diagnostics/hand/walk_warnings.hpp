@@ -11,7 +11,8 @@
 namespace hapticd::diagnostics {
 
 /// [main] Moves the hands of simulated arms through a scene. Warns of a hand that touches no model, of a model whose
-/// force is too small to feel, of limits that cut the force, and of a button that does not click.
+/// force is too small to feel, of limits that cut the force, of a button that does not click, and of an arm that is not
+/// stable.
 /// @param world world of the scene, built for as many probes as the scene has arms
 /// @param strays true for each model that will move in a way that was hardly meant (see strayModels()). Effects of such
 /// a model are not reported, because it has a warning already

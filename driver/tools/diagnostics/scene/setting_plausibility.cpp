@@ -183,7 +183,7 @@ document::Problems stiffTogether(const scene::Scene& scene, const scene::Device&
     model.name += fmt::format(" with {} in its place", group.size() == 2 ? scene.models[group[1]].name
                                                                          : fmt::format("{} models", group.size() - 1));
     for (document::Problem& one : tune::unstableSettings(together, device, info, sum)) {
-      if (one.key.rfind("models[0]", 0) != 0) continue;  // reported elsewhere
+      if (one.key.rfind("models[0]", 0) != 0 || one.key.ends_with(".damping")) continue;  // reported elsewhere
       one.key.replace(0, 9, fmt::format("models[{}]", group[0]));
       warnings.push_back(std::move(one));
     }

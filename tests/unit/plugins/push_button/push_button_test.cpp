@@ -183,9 +183,9 @@ TEST(PushButton, ComesBackIfNoSampleComesAnyMore) {
   plugin.tick({{0, kTop + 1e-3, 0}});
   for (int i = 0; i < 5; ++i) plugin.tick({{0, kTop - 0.008, 0}});
   const double pressed = plugin.position().y();
-  for (int i = 0; i < 40; ++i) plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
-  EXPECT_EQ(plugin.position().y(), pressed);
   for (int i = 0; i < 20; ++i) plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
+  EXPECT_EQ(plugin.position().y(), pressed);
+  for (int i = 0; i < 40; ++i) plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
   EXPECT_EQ(plugin.position().y(), 0);
 }
 
@@ -201,6 +201,27 @@ TEST(PushButton, AnArmThatIsGoneDoesNotLetGoOfWhatAnotherPresses) {
   EXPECT_LT(pressed, -1e-3);
   plugin.tick({away, {0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
   EXPECT_EQ(plugin.position().y(), pressed) << "one sample was lost";
+}
+
+/// Two fingers share a detent. As one arm is lost, the other finger comes to bear all of it, and not at once.
+TEST(PushButton, AnArmThatIsGoneLeavesItsShareToTheOtherSlowly) {
+  const Button button;
+  PluginUnderTest plugin;
+  button.make(plugin, 2);
+  const std::vector<Eigen::Vector3d> fingers{{-0.01, kTop - 0.002, 0}, {0.01, kTop - 0.002, 0}};
+  plugin.tick({{-0.01, kTop + 1e-3, 0}, {0.01, kTop + 1e-3, 0}});
+  for (int i = 0; i < 5; ++i) plugin.tick(fingers);
+  const double shared = plugin.force(1).y();
+  plugin.own_flags = {HSP_IN_INVALID, 0};
+  double last = shared, most = 0;
+  for (int i = 0; i < 100; ++i) {
+    plugin.tick(fingers);
+    most = std::max(most, std::abs(plugin.force(1).y() - last));
+    last = plugin.force(1).y();
+  }
+  EXPECT_NEAR(last, forceOnBranch(button, 0.002, true), 1e-9) << "alone";
+  EXPECT_GT(last, shared + 0.5);
+  EXPECT_LT(most, 0.1 * (last - shared)) << "in one tick";
 }
 
 TEST(PushButton, EnergyOverAPressIsNeverGained) {

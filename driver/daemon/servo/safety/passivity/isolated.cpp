@@ -66,4 +66,15 @@ double maxStiffnessAlone(double mass, int n, double period) noexcept {
   return largestStiffness((low + high) / 2, window) * mass / (period * period);
 }
 
+double maxDampingAlone(double mass, int n, double period) noexcept {
+  constexpr double kSoft = 1e-4;  // so soft that the damping alone matters, and so stiff that the motion decays
+  constexpr int kHalvings = 12;
+  double low = 0, high = 3;  // whatever n is, b stays below 2.1
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (comesToRest(kSoft, middle, std::clamp(n, 1, kLongestWindow)) ? low : high) = middle;
+  }
+  return low * mass / period;
+}
+
 }  // namespace hapticd::passivity

@@ -19,6 +19,13 @@ TEST(MassAlone, BearsTheStiffnessOfTheRootsOfItsPolynomial) {
   EXPECT_NEAR(passivity::maxStiffnessAlone(0.075, 1, 1e-3), 0.684 * 0.075 * 1e6, 600);
 }
 
+/// From the same: largest B T / m.
+TEST(MassAlone, BearsTheDampingOfTheRootsOfItsPolynomial) {
+  const std::pair<int, double> truth[] = {{1, 2}, {2, 4.0 / 3}, {3, 1.0294}};
+  for (const auto& [n, b] : truth) EXPECT_NEAR(passivity::maxDampingAlone(1, n, 1) / b, 1, 0.01) << n;
+  EXPECT_NEAR(passivity::maxDampingAlone(0.075, 1, 1e-3), 150, 1.5);
+}
+
 struct Case {
   scene::Scene scene;
   scene::Device device;
@@ -109,6 +116,29 @@ TEST(UnstableSettings, SayThatAWindowIsTooLong) {
   EXPECT_NE(slow.told(2000), "") << "one sample more than it names is too long";
   slow.scene.servo.velocity.parameter = 12;
   EXPECT_EQ(slow.told(2000), "");
+}
+
+/// 50 N s/m at 0.8 N are 530 N s/m at 8.5 N: such a wall threw a simulated hand about until it was silenced.
+TEST(UnstableSettings, SayThatADampingThatGrowsWithDepthIsTooLarge) {
+  Case damped;
+  damped.scene.models[0].plugin = "nurbs_rigid";
+  damped.info.max_force = 8.5;
+  const auto give = [&](const char* id, double number) {
+    scene::Value value;
+    value.id = id;
+    value.number = number;
+    damped.scene.models[0].parameters.push_back(value);
+  };
+  give("stiffness", 800);
+  give("damping", 50);
+  const std::string text = damped.told(800);
+  EXPECT_NE(text.find("wall damps with 531.2 N s/m where it pushes with the 8.5 N of arm"), std::string::npos) << text;
+  EXPECT_NE(text.find("expected at most 26 N s/m"), std::string::npos) << text;
+  damped.scene.models[0].parameters[1].number = 26;
+  EXPECT_EQ(damped.told(800).find("damps"), std::string::npos);
+  damped.scene.models[0].parameters[1].number = 50;
+  give("depth_scale", 0.01);
+  EXPECT_EQ(damped.told(800).find("damps"), std::string::npos);
 }
 
 TEST(UnstableSettings, SayThatABudgetIsBeyondThePeriodAndARateBeyondTheDevice) {

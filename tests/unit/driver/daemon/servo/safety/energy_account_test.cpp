@@ -59,6 +59,22 @@ TEST(EnergyAccount, WhatFrictionTookIsNotGivenBack) {
   EXPECT_TRUE(found);
 }
 
+/// Friction that sticks: 100 N/m, stretched by 0.1 m, in a wall that is 1 mm deep. It may give back what it took, once.
+TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
+  EnergyAccount account;
+  LastPush last;
+  const auto step = [&](double x, double pull) {
+    account.add({-pull, 0, 0}, {x, 0, 0}, 1e-3, last);
+    return account.closeStep(kTick, 0.5 * 100 * x * x);
+  };
+  for (int i = 0; i <= 100; ++i) ASSERT_FALSE(step(1e-3 * i, 0.1 * i));
+  for (int i = 100; i >= 0; --i) ASSERT_FALSE(step(1e-3 * i, 0.1 * i));
+  EXPECT_NEAR(account.given(), 0, 1e-3);
+  bool found = false;
+  for (int i = 0; i <= 100 && !found; ++i) found = step(1e-3 * i, -0.1 * i);
+  EXPECT_TRUE(found);
+}
+
 TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
   Book book;
   for (int turn = 0; turn < 20; ++turn) {
