@@ -13,6 +13,7 @@
 #include "cli/import/mesh.hpp"
 #include "cli/import/scene.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/model_file.hpp"
 #include "cli/support/output_file.hpp"
 #include "document/node.hpp"
 #include "import/bezier_import.hpp"
@@ -174,19 +175,6 @@ int importModel(const ImportArguments& options) {
   return importPatches(options, placement);
 }
 
-/// Returns whether a file is a model as import writes it, which needs only a scene. Sets `soft` for a soft body.
-bool isModel(const std::string& file, bool& soft) {
-  const std::string ending = endingOf(file);
-  soft = ending == ".ma";
-  if (soft || ending == ".hpart") return true;
-  if (ending != ".yaml" && ending != ".yml" && ending != ".json") return false;
-  document::Problems ignored;  // the plugin reads the file again, and reports its problems
-  const auto root = document::parseFile(file, ignored);
-  if (!root || !root->isMap() || root->find("format") == nullptr) return false;
-  soft = root->find("medial") != nullptr;
-  return true;
-}
-
 /// Writes a scene for a model that was made before.
 int sceneOfModel(const ImportArguments& options, bool soft) {
   const Placement& placement = options.placement;
@@ -209,9 +197,9 @@ void printNext(const std::string& model) {
 
 /// Imports the model, and writes a scene for it if one is asked for.
 int importAll(const ImportArguments& options) {
-  bool soft = false;
-  if (options.out.empty() && !options.scene.empty() && !options.medial && isModel(options.file, soft))
-    return sceneOfModel(options, soft);
+  const ModelFile kind = modelFileOf(options.file);
+  if (options.out.empty() && !options.scene.empty() && !options.medial && kind != ModelFile::kNone)
+    return sceneOfModel(options, kind == ModelFile::kSoft);
   if (options.scene.empty()) {
     const int code = importModel(options);
     if (code == kWorked && !options.json && !options.cad.check && options.out != "-") printNext(options.out);
