@@ -7,11 +7,13 @@
 
 #include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
+#include "base/shell_word.hpp"
 #include "cli/import/cad.hpp"
 #include "cli/import/file_content.hpp"
 #include "cli/import/mesh.hpp"
 #include "cli/import/scene.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/model_file.hpp"
 #include "cli/support/output_file.hpp"
 #include "document/node.hpp"
 #include "import/bezier_import.hpp"
@@ -140,8 +142,9 @@ int importModel(const ImportArguments& options) {
                                ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of "
                                "which the part was made, or one that a CAD program exports");
   if (part)
-    return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
-                               options.file + "); hapticd part info shows what it holds");
+    return fail(kBadInput, options.file + ": is a part already, as import writes it\n  fix: hapticd import " +
+                               shellWord(options.file) + " --scene SCENE.yaml writes a scene for it, hapticd view " +
+                               shellWord(options.file) + " shows it");
   if (const std::string better = otherCommand(options.file); !better.empty()) return fail(kBadInput, better);
   if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
   if (std::error_code error; !std::filesystem::exists(options.file, error))
@@ -172,9 +175,36 @@ int importModel(const ImportArguments& options) {
   return importPatches(options, placement);
 }
 
+/// Writes a scene for a model that was made before.
+int sceneOfModel(const ImportArguments& options, bool soft) {
+  const Placement& placement = options.placement;
+  if (placement.scale != 1 || placement.fit > 0 || placement.center || options.up != "y")
+    return fail(kBadInput, options.file +
+                               ": is made already, so its size and place stay, expected --scene alone\n  fix: import "
+                               "again what it was made of, with --out");
+  if (const std::string wrong = whyNoScene(options.scene, options.file); !wrong.empty()) return fail(kBadInput, wrong);
+  return writeFirstScene({options.file, options.file, options.scene, placement, soft, options.json});
+}
+
+/// Says how to see and feel what was written.
+void printNext(const std::string& model) {
+  const std::string name = shellWord(model);
+  std::printf(
+      "\nthen:\n  hapticd view %s    # look at it\n"
+      "  hapticd import %s --scene SCENE.yaml    # write a scene, to feel it\n",
+      name.c_str(), name.c_str());
+}
+
 /// Imports the model, and writes a scene for it if one is asked for.
 int importAll(const ImportArguments& options) {
-  if (options.scene.empty()) return importModel(options);
+  const ModelFile kind = modelFileOf(options.file);
+  if (options.out.empty() && !options.scene.empty() && !options.medial && kind != ModelFile::kNone)
+    return sceneOfModel(options, kind == ModelFile::kSoft);
+  if (options.scene.empty()) {
+    const int code = importModel(options);
+    if (code == kWorked && !options.json && !options.cad.check && options.out != "-") printNext(options.out);
+    return code;
+  }
   if (const std::string wrong = whyNoScene(options.scene, options.out); !wrong.empty()) return fail(kBadInput, wrong);
   if (const int code = importModel(options); code != kWorked) return code;
   Placement placement = options.placement;
@@ -287,7 +317,8 @@ void addImport(const Command& app, int& exit_code) {
   addMedialOptions(command, *options);
   command
       .addOption("--scene", options->scene,
-                 "also write a first scene for what is made: a new file, .yaml, to be run with hapticd run --view")
+                 "also write a first scene for what is made, or without --out for a part or model file: a new file, "
+                 ".yaml, to be run with hapticd run --view")
       .excludes("--check")
       .excludes("--calibrate");
   command.footer(

@@ -19,6 +19,7 @@
 
 #include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
+#include "base/shell_word.hpp"
 #include "base/short_number.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/output_file.hpp"
@@ -174,7 +175,10 @@ std::string parameterLine(const std::string& setting, const std::string& comment
 std::string feelLines(const FirstScene& first, double stiffness) {
   if (first.soft && endingOf(first.model) != ".ma")
     return "      # stiffness, damping and mass are in the geometry file\n";
-  if (first.soft) return parameterLine("stiffness: 400", "N/m; smaller is softer");
+  if (first.soft)
+    return parameterLine("stiffness: 400", "N/m; smaller is softer") +
+           parameterLine("damping: 0.5", "N s/m, of each sphere") + parameterLine("mass: 0.01", "kg, of each sphere") +
+           parameterLine("dynamics: felt", "the hand feels the body as it moves; off: a body at rest");
   return parameterLine("stiffness: " + shortNumber(stiffness),
                        stiffness > kStiffness ? "N/m; with less the tip comes out behind the thinnest wall"
                                               : "N/m; smaller is softer") +
@@ -227,8 +231,8 @@ void warnOfFit(const FirstScene& first, const Vector3d& size) {
       first.placement.fit > 0 ? "" : ", or --scale " + shortNumber(first.placement.scale * kFitting / most);
   std::fprintf(stderr, "warning: %s: is %s large, and %s\n  fix: rm %s, then import it anew with --fit %s%s\n",
                first.model.c_str(), sizeText(size).c_str(),
-               most > kLarge ? "the arm reaches only a part of it" : "a tip hardly finds it", first.scene.c_str(),
-               withDigits(kFitting, 3).c_str(), scale.c_str());
+               most > kLarge ? "the arm reaches only a part of it" : "a tip hardly finds it",
+               shellWord(first.scene).c_str(), withDigits(kFitting, 3).c_str(), scale.c_str());
 }
 
 }  // namespace
@@ -247,14 +251,16 @@ std::string whyNoScene(const std::string& scene, const std::string& model) {
 
 int writeFirstScene(const FirstScene& first) {
   const auto facts = factsOf(first);
+  if (!facts && first.from == first.model)
+    return fail(kBadInput, first.model + ": no scene can be made: " + facts.error());
   if (!facts) return fail(kFailed, first.model + " is written, but no scene for it: " + facts.error());
   if (const auto written = writeWhole(first.scene, textOf(first, *facts)); !written)
     return fail(kFailed, written.error());
   warnOfFit(first, facts->place.box.sizes());
   if (first.silent) return kWorked;
-  const char* scene = first.scene.c_str();
-  std::printf("%s\n\nthen:\n  hapticd check %s               # after each change\n  hapticd run %s --view\n", scene,
-              scene, scene);
+  const std::string scene = shellWord(first.scene);
+  std::printf("%s\n\nthen:\n  hapticd check %s               # after each change\n  hapticd run %s --view\n",
+              first.scene.c_str(), scene.c_str(), scene.c_str());
   return kWorked;
 }
 

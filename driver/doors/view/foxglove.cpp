@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "document/json_text.hpp"
 #include "export/ros_message.hpp"
@@ -18,6 +19,8 @@ namespace {
 constexpr uint64_t kTickBytes = 1u << 20;  ///< [bytes] largest size of the rows of one stream that are sent at once
 /// Triangles of all models together in /scene. They go as text, about 50 bytes each, and all at once.
 constexpr uint32_t kSceneTriangles = 200000;
+/// Ticks of the server (60 a second) in which a client names one topic after the other.
+constexpr unsigned kSubscribing = 12;
 constexpr char kMessageData = 1;  ///< op code of a message to a subscription
 
 uint64_t wallNow() {
@@ -53,11 +56,14 @@ class FoxgloveSession final : public PeerSession {
     std::vector<record::Column> columns = {};  ///< of the stream
   };
 
+  bool isReady();
   void begin();
   void advertise();
   void sendStream(size_t stream);
   void send(uint32_t subscription, uint64_t time, std::string_view head, std::string_view body);
   void sendTransforms();
+  uint64_t untilChange(size_t stream) const;
+  void takeList();
   void sendScene();
   uint32_t subscriptionOf(uint32_t channel) const;
   uint32_t tfChannel() const { return static_cast<uint32_t>(channels_.size()) - 1; }
@@ -71,6 +77,9 @@ class FoxgloveSession final : public PeerSession {
   std::map<uint32_t, uint32_t> subscriptions_;  ///< subscription -> channel
   std::vector<uint64_t> next_;
   std::unique_ptr<Frames> frames_;
+  std::set<ModelKey> shown_;       ///< models whose triangles were sent to the subscriber of /scene
+  unsigned since_subscribed_ = 0;  ///< ticks of the server since a subscription came
+  size_t drawing_ = 0;             ///< number of models whose triangles were asked for and have not come
   uint32_t t_offset_ = 0;
   uint64_t newest_ = 0;  ///< [ns] time of the newest tick, since 1970
 };
@@ -79,9 +88,18 @@ void FoxgloveSession::onTick() {
   if (stage_.rows() == nullptr) return;
   if (run_ != stage_.run()) begin();
   if (!peer_.idle()) return;  // the rows stay in the black box until later
+  takeList();
+  if (stage_.recorded() && !isReady()) return;
   for (size_t i = 0; i < next_.size(); ++i) sendStream(i);
   sendTransforms();
   sendScene();
+}
+
+/// A recording is sent from its start, once. So it waits until its client has subscribed to what it wants, for its
+/// list, which says what each row means, and for triangles, which come before later rows.
+bool FoxgloveSession::isReady() {
+  const bool listed = list_number_ > 0 || !stage_.daemon().connected();
+  return !subscriptions_.empty() && listed && drawing_ == 0 && ++since_subscribed_ > kSubscribing;
 }
 
 void FoxgloveSession::begin() {
@@ -90,6 +108,8 @@ void FoxgloveSession::begin() {
   next_.clear();
   for (size_t i = 0; i < rows.streams().size(); ++i) next_.push_back(stage_.recorded() ? 0 : rows.end(i));
   frames_ = std::make_unique<Frames>(stage_.about());
+  list_number_ = 0;
+  shown_.clear();
   t_offset_ = 0;
   for (const record::Column& column : columnsOf(stage_.about(), "ticks"))
     if (column.name == "t") t_offset_ = column.offset;
@@ -141,6 +161,19 @@ uint32_t FoxgloveSession::subscriptionOf(uint32_t channel) const {
   return 0;
 }
 
+/// Returns how many of the next rows of a recording's ticks have the same models: /scene and /tf change behind them.
+uint64_t FoxgloveSession::untilChange(size_t stream) const {
+  const RowSource& rows = *stage_.rows();
+  if (!stage_.recorded() || stream != rows.find("ticks")) return UINT64_MAX;
+  uint64_t change = UINT64_MAX;
+  for (const ModelFrame& model : frames_->models())
+    for (const uint64_t tick : {model.since, model.until})
+      if (tick > frames_->tick() + 1) change = std::min(change, tick);
+  if (change == UINT64_MAX) return UINT64_MAX;
+  const uint64_t row = firstRowOf(rows, stream, change);
+  return row > next_[stream] ? row - next_[stream] : 1;
+}
+
 void FoxgloveSession::sendStream(size_t stream) {
   const RowSource& rows = *stage_.rows();
   const RowStream& what = rows.streams()[stream];
@@ -152,7 +185,8 @@ void FoxgloveSession::sendStream(size_t stream) {
   const uint64_t end = rows.end(stream);
   if (next_[stream] < rows.begin(stream)) next_[stream] = rows.begin(stream) + 1;  // the client reads too slowly
   if (subscription == 0 && !followed) next_[stream] = end;
-  const uint64_t count = std::min(end - std::min(end, next_[stream]), kTickBytes / what.row_bytes);
+  const uint64_t count =
+      std::min({end - std::min(end, next_[stream]), kTickBytes / what.row_bytes, untilChange(stream)});
   if (count == 0) return;
   std::vector<std::byte> bytes(count * what.row_bytes);
   const uint64_t got = rows.copy(stream, next_[stream], count, bytes.data());
@@ -187,22 +221,38 @@ void FoxgloveSession::sendTransforms() {
   if (subscription != 0 && newest_ != 0) send(subscription - 1, newest_, "", tfMessage(frames_->all(), newest_));
 }
 
-/// Sends the triangles of every model, when somebody subscribes and when the list of models changes.
+/// Takes a new list of models.
+void FoxgloveSession::takeList() {
+  if (list_number_ == stage_.listNumber() || stage_.list().empty()) return;
+  list_number_ = stage_.listNumber();
+  frames_->list(stage_.list());
+}
+
+/// Sends the triangles of the models that have come, and removes those that have left.
 void FoxgloveSession::sendScene() {
   const uint32_t subscription = subscriptionOf(sceneChannel());
-  if (subscription == 0 || list_number_ == stage_.listNumber() || stage_.list().empty()) return;
-  list_number_ = stage_.listNumber();
-  const Json models = stage_.list().value("models", Json::array());
-  const auto share = kSceneTriangles / std::max(static_cast<uint32_t>(models.size()), 1u);
-  for (const Json& model : models) {
-    const ModelKey key = keyOf(model, "name");
-    if (stage_.recorded() && key.since > 0) continue;  // it has no frame in /tf
-    stage_.draw(key, std::max(share, kFewestTriangles),
-                [this, name = key.name, subscription, alive = alive_](const DrawnModel& drawn) {
-                  if (*alive && drawn.mesh)
-                    send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
-                });
-  }
+  if (subscription == 0 || list_number_ == 0) return;
+  std::set<ModelKey> present;
+  for (const ModelFrame& model : frames_->models())
+    if (model.isThere(frames_->tick())) present.insert({model.frame.name, model.since});
+  // first those that have left, because one that has come may have the same name
+  std::erase_if(shown_, [&](const ModelKey& key) {
+    const bool left = !present.contains(key);
+    if (left) send(subscription - 1, newest_, "", sceneRemoval(key.name, newest_));
+    return left;
+  });
+  const auto share = kSceneTriangles / std::max(static_cast<uint32_t>(present.size()), 1u);
+  for (const ModelKey& key : present)
+    if (shown_.insert(key).second) {
+      ++drawing_;
+      stage_.draw(key, std::max(share, kFewestTriangles),
+                  [this, key, subscription, alive = alive_](const DrawnModel& drawn) {
+                    if (!*alive) return;
+                    --drawing_;
+                    if (drawn.mesh && shown_.contains(key))
+                      send(subscription - 1, newest_, "", sceneUpdate(key.name, *drawn.mesh, newest_));
+                  });
+    }
 }
 
 void FoxgloveSession::onText(std::string_view text) {
@@ -219,7 +269,8 @@ void FoxgloveSession::onText(std::string_view text) {
       if (id == UINT32_MAX || channel == 0 || channel > channels_.size() || subscriptions_.size() > channels_.size())
         continue;
       subscriptions_[id] = channel;
-      if (channel == sceneChannel()) list_number_ = 0;
+      since_subscribed_ = 0;
+      if (channel == sceneChannel()) shown_.clear();
     }
   } else if (op == "unsubscribe" && request.contains("subscriptionIds") && request["subscriptionIds"].is_array()) {
     for (const Json& id : request["subscriptionIds"])

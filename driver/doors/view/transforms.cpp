@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "mesh.hpp"
@@ -63,18 +64,31 @@ std::string coloursOf(const uint32_t* words, uint32_t count) {
   return text;
 }
 
+/// Returns the frame of a model of a scene or a list. @param place its place there, which is its number if none is
+/// given
+ModelFrame modelFrame(const Json& model, uint32_t place) {
+  const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : 0.0; };
+  ModelFrame listed;
+  Frame& frame = listed.frame;
+  frame.name = model.value("name", "");
+  const Json pose = model.value("pose", Json::object());
+  const Json position = pose.value("position", Json::array()), turn = pose.value("orientation", Json::array());
+  for (size_t i = 0; i < position.size() && i < 3; ++i) frame.position[i] = number(position[i]);
+  for (size_t i = 0; i < turn.size() && i < 4; ++i) frame.orientation[i] = number(turn[i]);
+  const auto whole = [&](const char* key, uint64_t otherwise) {
+    const auto it = model.find(key);
+    return it != model.end() && it->is_number_unsigned() ? it->get<uint64_t>() : otherwise;
+  };
+  listed.number = static_cast<uint32_t>(whole("number", place));
+  listed.since = whole("since", 0);
+  listed.until = whole("until", UINT64_MAX);
+  return listed;
+}
+
 }  // namespace
 
 Frames::Frames(const Json& about) {
-  const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : 0.0; };
-  for (const Json& model : about.value("scene", Json::object()).value("models", Json::array())) {
-    Frame& frame = models_.emplace_back();
-    frame.name = model.value("name", "");
-    const Json pose = model.value("pose", Json::object());
-    const Json position = pose.value("position", Json::array()), turn = pose.value("orientation", Json::array());
-    for (size_t i = 0; i < position.size() && i < 3; ++i) frame.position[i] = number(position[i]);
-    for (size_t i = 0; i < turn.size() && i < 4; ++i) frame.orientation[i] = number(turn[i]);
-  }
+  list(about.value("scene", Json::object()));
   size_t arm = 0;
   for (const Json& device : about.value("devices", Json::array())) {
     tips_.push_back({device.value("name", "arm") + "_tip", {}, {1, 0, 0, 0}});
@@ -84,24 +98,49 @@ Frames::Frames(const Json& about) {
   pose_at_ = offsetOf(about, "poses", "x");
 }
 
+void Frames::list(const Json& answer) {
+  const std::vector<ModelFrame> former = std::move(models_);
+  models_.clear();
+  for (const Json& model : answer.value("models", Json::array())) {
+    const ModelFrame listed = modelFrame(model, static_cast<uint32_t>(models_.size()));
+    const auto known = std::find_if(former.begin(), former.end(), [&](const ModelFrame& one) {
+      return one.frame.name == listed.frame.name && one.number == listed.number && one.since == listed.since;
+    });
+    models_.push_back(listed);
+    if (known == former.end() || !known->moved) continue;
+    models_.back().frame = known->frame;
+    models_.back().moved = true;
+  }
+}
+
 void Frames::take(const std::string& stream, const std::byte* rows, uint64_t count, uint32_t row_bytes) {
   if (count == 0) return;
   if (stream == "ticks") {
     const std::byte* newest = rows + (count - 1) * row_bytes;
+    std::memcpy(&tick_, newest, sizeof tick_);
     for (size_t i = 0; i < tips_.size(); ++i)
       if (tip_at_[i] != 0 && tip_at_[i] + kFrameBytes <= row_bytes) readFrame(newest + tip_at_[i], tips_[i]);
     return;
   }
   if (stream != "poses" || pose_at_ + kFrameBytes > row_bytes) return;
   for (uint64_t i = 0; i < count; ++i) {
-    uint32_t model = 0;
-    std::memcpy(&model, rows + i * row_bytes + model_at_, sizeof model);
-    if (model < models_.size()) readFrame(rows + i * row_bytes + pose_at_, models_[model]);
+    const std::byte* row = rows + i * row_bytes;
+    uint64_t tick = 0;
+    uint32_t number = 0;
+    std::memcpy(&tick, row, sizeof tick);
+    std::memcpy(&number, row + model_at_, sizeof number);
+    for (ModelFrame& model : models_) {
+      if (model.number != number || !model.isThere(tick)) continue;
+      readFrame(row + pose_at_, model.frame);
+      model.moved = true;
+    }
   }
 }
 
 std::vector<Frame> Frames::all() const {
-  std::vector<Frame> frames = models_;
+  std::vector<Frame> frames;
+  for (const ModelFrame& model : models_)
+    if (model.isThere(tick_)) frames.push_back(model.frame);
   frames.insert(frames.end(), tips_.begin(), tips_.end());
   return frames;
 }
@@ -137,11 +176,18 @@ const char* const kTfDefinition =
     "MSG: geometry_msgs/Quaternion\nfloat64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
 
 const char* const kSceneDefinition =
-    R"({"title":"foxglove.SceneUpdate","type":"object","properties":{"deletions":{"type":"array","items":{"type":"object"}},)"
+    R"({"title":"foxglove.SceneUpdate","type":"object","properties":{"deletions":{"type":"array","items":{"type":"object",)"
+    R"("properties":{"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},)"
+    R"("type":{"type":"integer"},"id":{"type":"string"}}}},)"
     R"("entities":{"type":"array","items":{"type":"object","properties":{"timestamp":{"type":"object","properties":)"
     R"({"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"frame_id":{"type":"string"},"id":{"type":"string"},)"
     R"("lifetime":{"type":"object"},"frame_locked":{"type":"boolean"},"metadata":{"type":"array"},"triangles":)"
     R"({"type":"array","items":{"type":"object"}}}}}}})";
+
+std::string sceneRemoval(const std::string& model, uint64_t time_ns) {
+  return fmt::format(R"({{"deletions":[{{"timestamp":{{"sec":{},"nsec":{}}},"type":0,"id":{}}}],"entities":[]}})",
+                     time_ns / kNanoseconds, time_ns % kNanoseconds, Json(model).dump());
+}
 
 std::string sceneUpdate(const std::string& model, const std::string& mesh, uint64_t time_ns) {
   uint32_t head[4];

@@ -13,6 +13,7 @@
 #include "document/node.hpp"
 #include "import/active_model.hpp"
 #include "import/indentation.hpp"
+#include "import/progress_line.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -211,6 +212,7 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
   const Eigen::MatrixXd shares = sharesOf(body, answers);
   std::vector<double>& stiffness = fitted.stiffness;
   std::vector<double> forces;
+  ProgressLine progress;
   stiffness.assign(body.points.size(), answers.front().force / answers.front().depth);
   for (int round = 0; round < kRounds; ++round) {
     if (const auto done = writeWhole(options.out, written(body, fitted, options)); !done) return Error{done.error()};
@@ -225,7 +227,9 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
                         options.answers, j + 1)};
       missing[static_cast<Eigen::Index>(j)] = std::log(answers[j].force / forces[j]);
     }
-    if (missing.cwiseAbs().maxCoeff() < kFitted) break;
+    const double worst = missing.cwiseAbs().maxCoeff();
+    progress.show(fmt::format("fitting the stiffness: round {}, force within {:.2g} %", round + 1, 100 * worst));
+    if (worst < kFitted) break;
     const Eigen::VectorXd change = shares * missing;
     for (std::size_t i = 0; i < stiffness.size(); ++i)
       stiffness[i] = std::min(kStiffest, stiffness[i] * std::exp(change[static_cast<Eigen::Index>(i)]));
@@ -242,7 +246,10 @@ Result<void> fitShear(const Body& body, const std::vector<Indentation>& dents, c
     return writeWhole(options.out, written(body, tried, options));
   };
   const double spacing = spacingOf(body);
+  ProgressLine progress;
+  progress.show("fitting the reach of the shear");
   const auto fit = fitReach(options.out, kFarthestReach * spacing, dents, write, catalog);
+  progress.clear();
   if (!fit) return Error{fit.error()};
   fitted.reach = fit->reach;
   double worst = 0, squares = 0, wider = 0;

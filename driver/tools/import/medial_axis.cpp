@@ -19,15 +19,8 @@ constexpr int kMostShrinks = 50;               ///< largest number of steps in w
 constexpr double kShrunk = 1e-9;               ///< relative change of a radius below which a ball no longer shrinks
 constexpr std::size_t kMostCandidates = 6000;  ///< largest number of balls from which the spheres are chosen
 constexpr std::size_t kMostCovered = 12000;    ///< largest number of samples that the spheres must cover
-constexpr std::size_t kTold = 10000;           ///< number of balls between two messages of progress
 constexpr int kChecks = 8;                     ///< spheres that are checked along an edge
 constexpr double kFlatCosine = 0.94;           ///< cosine of 20 degrees: flatter edges belong to a smooth surface
-
-using Progress = std::function<void(const std::string&)>;
-
-std::string share(std::size_t done, std::size_t all) {
-  return "  " + std::to_string(100 * done / all) + " %";
-}
 
 struct Ball {
   Vector3d center;
@@ -115,13 +108,13 @@ bool standsOut(const Vector3d& center, double radius, const SurfaceSamples& samp
 }
 
 std::vector<Ball> innerBalls(const SurfaceSamples& samples, const NearestPoints& nearest, const MedialOptions& options,
-                             const Progress& progress) {
+                             ProgressLine& progress) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : samples.points) box.extend(p);
   const double size = box.diagonal().norm(), least_angle = options.least_angle * M_PI / 180;
   std::vector<Ball> balls;
   for (uint32_t i = 0; i < samples.points.size(); ++i) {
-    if (i % kTold == kTold - 1) progress(share(i, samples.points.size()));
+    progress.show("shrinking a ball at each of the points", i, samples.points.size());
     const Ball ball = shrink(samples, nearest, i, size, least_angle);
     if (ball.radius < size / 2 && box.contains(ball.center) &&
         !standsOut(ball.center, ball.radius, samples, nearest, options.tolerance / 2))
@@ -315,21 +308,20 @@ SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count) {
   return samples;
 }
 
-Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options,
-                              const std::function<void(const std::string&)>& progress) {
+Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options, ProgressLine& progress) {
   if (samples.points.empty()) return Error{"the triangles have no area, so there is no surface"};
-  progress(std::to_string(samples.points.size()) + " points on the surface; shrinking a ball at each");
+  progress.show(std::to_string(samples.points.size()) + " points on the surface");
   const NearestPoints nearest(samples.points);
   const std::vector<Ball> balls = innerBalls(samples, nearest, options, progress);
   if (balls.empty())
     return Error{"the body has no medial axis: no ball inside touches the surface at two places that are " +
                  std::to_string(std::lround(options.least_angle)) +
                  " degrees apart\n  fix: give a smaller --angle (default 60), or more --samples if walls are thin"};
-  progress(std::to_string(balls.size()) + " balls on the medial axis; choosing the fewest that cover the surface");
+  progress.show(std::to_string(balls.size()) + " balls on the medial axis; choosing the fewest that cover the surface");
   MedialAxis axis;
   const std::vector<Ball> kept =
       cover(thinned(balls, kMostCandidates), thinned(samples.points, kMostCovered), options, axis.covered);
-  progress(std::to_string(kept.size()) + " spheres; joining them");
+  progress.show(std::to_string(kept.size()) + " spheres; joining them");
   for (const Ball& ball : kept)
     axis.spheres.emplace_back(ball.center.x(), ball.center.y(), ball.center.z(), ball.radius);
   join(kept, balls, InsideTest(kept, samples, nearest, options.tolerance), axis);

@@ -9,11 +9,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/result.hpp"
+#include "import/progress_line.hpp"
 #include "import/triangles.hpp"
 
 namespace hapticd::importing {
@@ -41,9 +41,8 @@ struct MedialAxis {
 /// [main] Returns about `count` points spread evenly over the triangles, the same in every call.
 SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count);
 
-/// [main] Computes the medial axis. Calls `progress` with the name of each step. Fails if no ball fits inside the
+/// [main] Computes the medial axis. Shows each step in `progress`. Fails if no ball fits inside the
 /// surface.
-Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options,
-                              const std::function<void(const std::string&)>& progress);
+Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options, ProgressLine& progress);
 
 }  // namespace hapticd::importing

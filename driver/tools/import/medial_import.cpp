@@ -14,6 +14,7 @@
 #include "import/active_model.hpp"
 #include "import/medial_axis.hpp"
 #include "import/nearest_points.hpp"
+#include "import/progress_line.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_repair.hpp"
 
@@ -45,7 +46,7 @@ std::string toMa(const MedialAxis& axis, const std::string& source) {
 
 std::string toYaml(const MedialAxis& axis, const MedialImport& options, const std::string& source) {
   std::string text =
-      fmt::format("# made from {} by hapticd import --medial\nformat: hapticd-model/1\nmedial:\n  vertices:\n", source);
+      fmt::format("# made from {} by hapticd import --medial\nformat: hapticd-model/2\nmedial:\n  vertices:\n", source);
   for (const auto& s : axis.spheres)
     text += fmt::format("    - [{:.9g}, {:.9g}, {:.9g}, {:.9g}]\n", s[0], s[1], s[2], s[3]);
   if (!axis.edges.empty()) text += "  edges:\n";
@@ -63,11 +64,14 @@ struct Deviation {
 };
 
 /// Measures the distance of the given surface from the surface of the body, as the plugin computes it.
-Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vector3d>& points) {
+Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vector3d>& points,
+                                ProgressLine& progress) {
   const hsp_near near{};
   if (body.surfaces()->activate(body.handle(), &near) < 0) return Error{"the body cannot be traced"};
   Deviation deviation;
+  std::size_t done = 0;
   for (const Vector3d& p : points) {
+    progress.show("measuring the written body", done++, points.size());
     const auto contact = touched(body, p);
     if (!contact) return Error{contact.error()};
     deviation.most = std::fmax(deviation.most, std::fabs(contact->depth_m));
@@ -78,11 +82,11 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
 
 /// Measures the distance of the given surface from the written body, and of the body from the surface, and prints both.
 Result<void> report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
-                    const SurfaceSamples& samples, host::Catalog& catalog) {
-  std::fprintf(stderr, "measuring the written body\n");
-  const auto body = activated("mat_deformable", options.out, catalog);
+                    const SurfaceSamples& samples, ProgressLine& progress, host::Catalog& catalog) {
+  // the distance is that from the body at rest
+  const auto body = activated("mat_deformable", options.out, catalog, ", dynamics: \"off\"");
   if (!body) return Error{body.error()};
-  const auto there = deviationFrom(**body, samples.points);
+  const auto there = deviationFrom(**body, samples.points, progress);
   if (!there) return Error{there.error()};
   // The drawn surface rounds creases by the size of a cell. Cells smaller than the tolerance show no more, and the time
   // grows with the square of their number.
@@ -97,6 +101,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
     back = std::fmax(back, off.norm());
     beyond = std::fmax(beyond, std::fabs(samples.normals[i].dot(off)));
   }
+  progress.clear();
   std::printf("%s: %zu spheres, %zu edges, %zu triangles, %d part%s; %.2f %% of the surface covered\n",
               options.out.c_str(), axis.spheres.size(), axis.edges.size(), axis.triangles.size(), axis.parts,
               axis.parts == 1 ? "" : "s", 100 * axis.covered);
@@ -107,12 +112,32 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
   const double reached = std::fmax(there->most, beyond);
   if (reached > settings.tolerance)
     std::fprintf(stderr,
-                 "warning: the body and the surface differ by up to %.3g mm, but --tolerance allows only %.3g mm: %s\n",
+                 "warning: the body and the surface differ by up to %.4g mm, but --tolerance allows only %.4g mm: %s\n",
                  1e3 * reached, 1e3 * settings.tolerance,
                  static_cast<int>(axis.spheres.size()) >= settings.most_spheres
                      ? "more --spheres may help"
                      : "more --samples may help, or a smaller --angle where the surface has edges");
   return {};
+}
+
+/// Says how a hand will feel the written body.
+void printFeel(const MedialImport& options) {
+  if (endsWith(options.out, ".ma")) {
+    std::printf(
+        "a .ma file holds no material: the scene gives stiffness, damping and mass; the hand feels the body as it "
+        "moves "
+        "with dynamics: felt, and at rest without\n");
+    return;
+  }
+  const std::string stiffness = options.young > 0 ? fmt::format("the stiffness of {:g} Pa in a layer of {:g} mm",
+                                                                options.young, 1e3 * options.thickness)
+                                                  : fmt::format("{:g} N/m", options.stiffness);
+  if (options.damping > 0 || options.mass > 0)
+    std::printf("felt: %s, and as it moves %g N s/m and %g g for each sphere (dynamics: felt)\n", stiffness.c_str(),
+                options.damping, 1e3 * options.mass);
+  else
+    std::printf("felt: %s, as a body at rest, because it has neither damping nor mass (dynamics: off)\n",
+                stiffness.c_str());
 }
 
 /// Warns of a large body, because its file was probably in millimetres.
@@ -186,13 +211,15 @@ Result<void> importMedial(const MedialImport& options, const Triangles& mesh, ho
   settings.most_spheres = options.most_spheres;
   settings.least_angle = options.least_angle;
   const SurfaceSamples samples = sampleSurface(mesh, static_cast<std::size_t>(options.samples));
-  const auto axis =
-      medialAxis(samples, settings, [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); });
+  ProgressLine progress;
+  const auto axis = medialAxis(samples, settings, progress);
   if (!axis) return Error{options.file + ": " + axis.error()};
   const std::string source = fs::path(options.file).filename().string();
   const std::string text = endsWith(options.out, ".ma") ? toMa(*axis, source) : toYaml(*axis, options, source);
   if (auto written = writeWhole(options.out, text); !written) return written;
-  return report(options, settings, *axis, samples, catalog);
+  if (auto measured = report(options, settings, *axis, samples, progress, catalog); !measured) return measured;
+  printFeel(options);
+  return {};
 }
 
 }  // namespace hapticd::importing

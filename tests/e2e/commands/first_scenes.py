@@ -107,8 +107,34 @@ def soft_bodies():
     mesh = write(folder, "egg.obj", egg())
     text, _ = made(mesh, "egg.ma", "--medial", "--samples", "3000")
     check("a medial mesh gets its material from the scene", "plugin: mat_deformable" in text and "\n      stiffness: 400" in text, text)
-    text, _ = made(mesh, "egg-body.yaml", "--medial", "--samples", "3000")
+    check("and is felt as it moves", "dynamics: felt: the force includes" in run("explain", join("egg-scene.yaml")).stdout, text)
+    text, told = made(mesh, "egg-body.yaml", "--medial", "--samples", "3000", "--mass", "0.02")
     check("a model file has its own", "plugin: mat_deformable" in text and "\n      stiffness:" not in text, text)
+    check("it is felt as it moves, and the import says so", "dynamics: felt: the force includes" in run("explain", join("egg-body-scene.yaml")).stdout
+          and "felt: 300 N/m, and as it moves 0.5 N s/m and 20 g for each sphere" in told, told)
+    code, out, err = run("import", mesh, "--medial", "-o", join("still.yaml"), "--samples", "3000", "--mass", "0", "--damping", "0")
+    check("without mass and damping it is felt at rest, and the import says so", code == 0 and "as a body at rest" in out, out + err)
+    presses_again(join("still.yaml"), "mat_deformable", "dynamics: off: the body follows")
+
+
+def presses_again(model, plugin, explained=""):
+    """A scene for a model that was imported before, as the import advises."""
+    scene = os.path.splitext(model)[0] + " again.yaml"  # a name that a shell must get in quotes
+    code, out, err = run("import", model, "--scene", scene)
+    check(f"{os.path.basename(model)}: a scene is made later", code == 0 and out.splitlines()[-1].strip() == f"hapticd run '{scene}' --view", out + err)
+    check("for its plugin", f"plugin: {plugin}\n" in presses(scene) and explained in run("explain", scene).stdout)
+
+
+def scenes_of_models():
+    code, out, err = run("import", join("cube.obj"), "-o", join("later's.hpart"))
+    quoted = "'" + join("later's.hpart").replace("'", "'\\''") + "'"
+    check("an import without a scene says how to see and feel the part", code == 0 and f"hapticd view {quoted}  " in out and
+          f"hapticd import {quoted} --scene SCENE.yaml" in out, out + err)
+    presses_again(join("later's.hpart"), "nurbs_rigid")
+    code, out, err = run("import", join("later's.hpart"), "--scene", join("b.yaml"), "--fit", "0.1")
+    check("a part that is made keeps its size", code == 2 and "import again" in err and not os.path.exists(join("b.yaml")), out + err)
+    code, out, err = run("import", write(folder, "bad.hpart", "no part"), "--scene", join("b.yaml"))
+    check("what is no part gets no scene", code == 2 and "bad.hpart" in err and not os.path.exists(join("b.yaml")), out + err)
 
 
 def odd_sizes():
@@ -174,6 +200,7 @@ def cad():
 meshes()
 model_files()
 soft_bodies()
+scenes_of_models()
 odd_sizes()
 paths()
 refusals()

@@ -159,8 +159,7 @@ def of_a_recording(folder, ask, recording):
                          (("plot", recording, "--arm", "1"), "has no ticks of arm 1, expected --arm 0 (the recording has 1 arm)"),
                          (("export", recording, "--csv", svg), "names a file, but each stream has a table of its own; expected a folder"),
                          (("export", recording, "--csv", os.path.join(folder, "run.xlsx")), "names a file, but each stream has a table of its own; expected a folder"),
-                         (("view", os.path.join(folder, "part.hpart")), "name it in a scene (geometry: "),
-                         (("view", os.path.join(folder, "seen.yaml")), "seen.yaml --view"),
+                         (("view", os.path.join(folder, "part.hpart")), "part.hpart"),
                          (("run", os.path.join(folder, "seen.yaml"), "--virtual-time", "--for", "0.01", "--record", os.path.join(folder, "run.csv")), "recordings are HDF5, expected a name that ends in .h5"),
                          (("export", recording, "--csv", "/nonexist/x", "--stream", "ticks"), "expected a file in a folder that you may write to"),
                          (("export", recording, "--mcap", "/nonexist/x"), "expected a file in a folder that you may write to")):

@@ -2,14 +2,14 @@
 // The official Foxglove client on a live daemon: every tick comes, and its bits are those of the recording of the run.
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {readFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import protocol from '@foxglove/ws-protocol';
 import {parse} from '@foxglove/rosmsg';
 import {MessageReader} from '@foxglove/rosmsg2-serialization';
 import {WebSocket} from 'ws';
-import {hapticd, sandboxed, scenes, until} from './program.mjs';
+import {hapticd, root, sandboxed, scenes, until} from './program.mjs';
 
 /** Subscribes to some topics and keeps what comes. */
 class Listener {
@@ -67,3 +67,31 @@ for (const name of ['foxglove.sdk.v1', 'foxglove.websocket.v1']) {
     assert.ok(Math.abs(Number(stamps[0] / 1000000n) - Date.now()) < 300e3, 'times are of today');
   }));
 }
+
+test('models that come and leave are in /scene and /tf, live and of a recording', () => sandboxed(async (sandbox) => {
+  const h5 = join(sandbox.folder, 'run.h5'), model = join(sandbox.folder, 'later.yaml');
+  writeFileSync(model, `hapticd: 1\nmodels:\n  - {name: later, plugin: nurbs_rigid, pose: {position: [0.2, 0, 0]}, parameters: {geometry: ${join(root, 'config', 'models', 'torus.yaml')}}}\n`);
+  const {daemon, url} = await sandbox.show(scenes('sphere'), {args: ['--record', h5]});
+  const ctl = (...words) => execFileSync(hapticd, ['ctl', '--name', 'test', '--wait', '30', ...words], {env: {...process.env, ...sandbox.env}, stdio: 'ignore'});
+  const topics = ['/hapticd/ticks', '/tf', '/scene'];
+  /** What happened to the models in /scene, and whether /tf ever had the later one, in its place. */
+  const told = (listener) => listener.messages.get('/scene').map(({data}) => JSON.parse(new TextDecoder().decode(data)))
+    .map(({entities, deletions}) => [...deletions.map(({id}) => `-${id}`), ...entities.map(({id}) => `+${id}`)].join());
+  const placed = (listener) => listener.decoded('/tf').some(({transforms}) => transforms.some((t) => t.child_frame_id === 'later' && t.transform.translation.x === 0.2));
+  const live = new Listener(url, 'foxglove.sdk.v1', topics);
+  const wanted = ['+sphere', '+later', '-later'];
+  for (const [i, words] of [['list'], ['add', model], ['remove', 'later']].entries()) {
+    ctl(...words);
+    await until(() => told(live).length > i, 60, `${wanted[i]} after ${told(live)}`);
+  }
+  assert.deepEqual(told(live), wanted);
+  assert.ok(placed(live), 'it has its frame');
+  live.client.close();
+  await daemon.end('SIGINT');
+  const [recorded] = await sandbox.start(['view', h5]).says(/http:\S+/);
+  const past = new Listener(recorded, 'foxglove.sdk.v1', topics);
+  await until(() => told(past).length >= 3, 60, `three changes, not ${told(past)}`);
+  assert.deepEqual(told(past), wanted, 'of the recording');
+  assert.ok(placed(past), 'it has its frame in the recording');
+  past.client.close();
+}));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 /** The page of hapticd-view. It passes the messages of the connection on to the scene, the plots and the panels. */
+import {Vector3} from 'three';
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Drawings} from './drawings.js';
 import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
-import {$, element, fileName, norm, save, short, themeColor} from './format.js';
+import {$, element, fileName, norm, save, short, sizeText, themeColor} from './format.js';
 import {greatestForce, Hand, handReach} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -80,7 +81,7 @@ class Page {
     on('list', (list) => this.#list(list));
     on('status', (status) => this.#status(status));
     on('reset', () => { this.now?.clear(); this.plots?.clear(); this.events?.clear(); });
-    on('playback', (state) => this.timeline.show(state));
+    on('playback', (state) => { if (!this.still) this.timeline.show(state); });
     on('waiting', ({name}) => this.#lamp('wait', `No daemon named ${name} runs yet. To start it: hapticd run SCENE${name === 'hapticd' ? '' : ` --name ${name}`}`));
     on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], [], 'The run has ended'); });
     on('lost', () => this.#lost());
@@ -114,11 +115,13 @@ class Page {
     const names = this.now.arms.map(({name}) => name), limits = names.map((_, i) => greatestForce(about, i));
     this.#measures(about, names, limits);
     this.#emptyScene(about, again);
+    this.still = recorded && names.length === 0; // models that are only looked at
+    document.body.classList.toggle('still', this.still);
     this.#title(hello);
     this.hand.begin(names, limits.map((limit, i) => handReach(about.scene?.devices?.[i], limit)),
       recorded ? 'A recording can only be looked at' : control ? '' : 'This view only looks. To press with the mouse: hapticd run SCENE --view', again);
     this.#invite(again);
-    if (!recorded) this.timeline.show(null);
+    if (!recorded || this.still) this.timeline.show(null);
     else if (again) this.timeline.restore();
     this.drawings.list(about.scene?.models ?? about.models ?? []);
     this.events.learn(this.drawings.listed);
@@ -159,7 +162,7 @@ class Page {
   #title({about, name, control, recorded}) {
     this.panel.folder = about.folder ?? '';
     $('scene-name').textContent = fileName(about.scene?.file) || name;
-    $('scene-mode').textContent = recorded ? `recording ${fileName(name)}` : control ? 'live' : 'live, looking only';
+    $('scene-mode').textContent = this.still ? 'at rest' : recorded ? `recording ${fileName(name)}` : control ? 'live' : 'live, looking only';
     document.title = `${$('scene-name').textContent} · hapticd`;
     $('run-tools').hidden = !control;
   }
@@ -168,6 +171,7 @@ class Page {
   async #drawModels() {
     if (!await this.drawings.draw()) return;
     this.view.measure();
+    $('read-size').value = sizeText(this.view.models.box().getSize(new Vector3()).toArray());
     this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
@@ -274,6 +278,7 @@ class Page {
     this.status = status;
     this.panel.silenced(status.silenced ?? []);
     const faults = (status.devices ?? []).filter((d) => d.fault).map((d) => `${d.name}: ${d.fault}`);
+    if (this.still) return this.#lamp('wait', 'Only looked at: no arm touches it');
     if (this.hello?.recorded) return this.#lamp('good', 'Recording');
     if (!('rate_hz' in status)) return undefined;
     const p99 = status.lateness_us?.p99;
@@ -321,7 +326,7 @@ class Page {
   }
 
   holdOrClear() {
-    if (this.hello?.recorded) return this.timeline.toggle();
+    if (this.hello?.recorded) return this.still ? undefined : this.timeline.toggle();
     if (!this.hello?.control) return this.notice('This view only looks. To change the run: hapticd view --control');
     return this.#order({do: this.held ? 'clear' : 'hold'});
   }

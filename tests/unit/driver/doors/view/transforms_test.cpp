@@ -41,12 +41,55 @@ TEST(Frames, StandWhereTheSceneSaysUntilARowSaysOtherwise) {
   EXPECT_EQ(frames.all()[1].position[2], 0.3);
 }
 
+TEST(Frames, OfModelsThatCameLaterAreThereWhileTheModelIs) {
+  Frames frames(kAbout);
+  frames.list(Json::parse(R"({"models": [
+    {"name": "door", "number": 0, "since": 0, "until": 10, "pose": {"position": [1, 2, 3]}},
+    {"name": "door", "number": 0, "since": 20, "until": null, "pose": {"position": [4, 5, 6]}},
+    {"name": "ball", "number": 1, "since": 15, "until": 30, "pose": {"position": [7, 8, 9]}}]})"));
+  const auto at = [&](uint64_t now) {
+    struct {
+      uint64_t tick;
+      double frame[7] = {0, 0, 0, 1, 0, 0, 0};
+    } tick{now};
+    frames.take("ticks", reinterpret_cast<const std::byte*>(&tick), 1, sizeof tick);
+    std::string names;
+    for (const Frame& frame : frames.all()) names += frame.name + " ";
+    return names;
+  };
+  const auto moved = [&](uint64_t tick, uint32_t model, double x) {
+    struct {
+      uint64_t tick;
+      uint32_t model, reserved = 0;
+      double frame[7];
+    } pose{tick, model, 0, {x, 0, 0, 1, 0, 0, 0}};
+    frames.take("poses", reinterpret_cast<const std::byte*>(&pose), 1, sizeof pose);
+  };
+  EXPECT_EQ(at(9), "door arm_tip ");
+  EXPECT_EQ(frames.all()[0].position[0], 1);
+  EXPECT_EQ(at(10), "arm_tip ");
+  moved(25, 0, 0.5);  // rows of poses may come before those of ticks
+  moved(16, 1, 0.25);
+  EXPECT_EQ(at(19), "ball arm_tip ");
+  EXPECT_EQ(frames.all()[0].position[0], 0.25);
+  EXPECT_EQ(at(20), "door ball arm_tip ");
+  EXPECT_EQ(frames.all()[0].position[0], 0.5) << "of the second door";
+  EXPECT_EQ(at(30), "door arm_tip ");
+}
+
 TEST(Frames, TakeNoRowsThatAreTooShort) {
   Frames frames(kAbout);
   uint64_t row = 3;
   frames.take("poses", reinterpret_cast<const std::byte*>(&row), 1, sizeof row);
   frames.take("ticks", reinterpret_cast<const std::byte*>(&row), 1, sizeof row);
   EXPECT_EQ(frames.all()[0].position[0], 1);
+}
+
+TEST(SceneRemoval, NamesTheEntity) {
+  const Json update = Json::parse(sceneRemoval("a \"quoted\" name", 1'500'000'000));
+  EXPECT_EQ(update["deletions"][0]["id"], "a \"quoted\" name");
+  EXPECT_EQ(update["deletions"][0]["type"], 0) << "0 removes the entity with this id";
+  EXPECT_TRUE(update["entities"].empty());
 }
 
 TEST(SceneUpdate, IsJsonWithEveryTriangle) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd view`: shows a running daemon, or a recording, in a browser.
+/// `hapticd view`: shows a running daemon, a recording, or a model at rest in a browser.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "base/file_ending.hpp"
 #include "base/os.hpp"
 #include "cli/recording/recorded_models.hpp"
 #include "cli/run/view_process.hpp"
 #include "cli/support/command.hpp"
+#include "cli/view/still.hpp"
 #include "control/liveness.hpp"
 #include "status/page_file.hpp"
 
@@ -34,35 +34,42 @@ std::vector<std::string> argumentsOf(const ViewArguments& options) {
   return arguments;
 }
 
-volatile sig_atomic_t viewer = 0;  ///< process id of the page's server, for the signal handler
+volatile sig_atomic_t viewer = 0;   ///< process id of the page's server, for the signal handler
+volatile sig_atomic_t stopped = 0;  ///< the signal that ends this command; 0 if none came
 
 void passToView(int signal) {
+  stopped = signal;
   if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);
-}
-
-/// Returns how to see a file that is no recording, such as a part; "" for other files.
-std::string wayToSee(const std::string& file) {
-  const std::string ending = endingOf(file);
-  if (ending == ".yaml" || ending == ".yml") return "\n  fix: to see a scene, run it: hapticd run " + file + " --view";
-  if (ending == ".hpart" || ending == ".ma")
-    return "\n  fix: name it in a scene (geometry: " + file + "), then: hapticd run SCENE --view";
-  return "";
 }
 
 /// Shows a recording: this process draws the models, another one serves the page.
 int viewRecording(const ViewArguments& options) {
+  os::onStopSignal(passToView);  // before the page has an address: who reads it may end this command at once
   auto models = RecordedModels::serve(options.file);
-  if (!models) return fail(kBadInput, models.error() + wayToSee(options.file));
+  if (!models) return fail(kBadInput, models.error());
   std::vector<std::string> arguments = argumentsOf(options);
   arguments.insert(arguments.end(), {"--file", options.file, "--drawings", (*models)->socket()});
   auto child = startView(arguments);
   if (!child) return fail(kFailed, child.error());
   viewer = *child;
-  os::onStopSignal(passToView);
+  if (stopped != 0) kill(*child, stopped);  // it came before there was a child
   int status = 0;
   while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
+}
+
+/// Shows a model or a scene that nobody runs.
+int viewStill(const ViewArguments& options) {
+  os::onStopSignal(passToView);  // the files of the models are removed also after a signal
+  int exit_code = kWorked;
+  const auto still = Still::of(options.file, exit_code);
+  if (!still) return exit_code;
+  if (stopped != 0) return kWorked;
+  std::fprintf(stderr, "%s is shown at rest; to feel it: %s\n", options.file.c_str(), still->command().c_str());
+  ViewArguments shown = options;
+  shown.file = still->recording();
+  return viewRecording(shown);
 }
 
 /// Says that the page will wait, if no daemon of this name runs.
@@ -76,6 +83,7 @@ void tellOfWaiting(const ViewArguments& options) {
 }
 
 int view(const ViewArguments& options) {
+  if (Still::is(options.file)) return viewStill(options);
   if (!options.file.empty()) return viewRecording(options);
   tellOfWaiting(options);
   return fail(kFailed, becomeView(argumentsOf(options)).error());
@@ -85,17 +93,21 @@ int view(const ViewArguments& options) {
 
 void addView(const Command& app, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
-  const Command command = app.addSubcommand("view", "Show a running daemon or a recording in a browser.");
+  const Command command =
+      app.addSubcommand("view", "Show a running daemon, a recording, a part or a scene in a browser.");
   command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
   command.addOption("--port", options->port, "port on 127.0.0.1; 0: a free one").wholeWithin(0, 65535);
   command.addFlag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
   command.addFlag("--open", options->open, "open the page in your browser");
-  command.addOption("--file,recording", options->file, "show this recording or dump instead of a daemon");
+  command.addOption(
+      "--file,recording", options->file,
+      "show this file instead of a daemon: a recording or dump, or at rest a part, a model file, a scene, a "
+      "CAD file or a mesh");
   command.footer(
       "The command prints the address of the page with a token. Everybody who has the token may look.\nTo look from "
       "another computer, forward the port: ssh -L PORT:127.0.0.1:PORT HOST.\n\nExamples:\n  hapticd view --control "
       "--open\n  hapticd view run.h5 "
-      "--open");
+      "--open\n  hapticd view bracket.hpart --open");
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "cli/view/still.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "base/file_ending.hpp"
+#include "base/shell_word.hpp"
+#include "cli/import/cad.hpp"
+#include "cli/import/mesh.hpp"
+#include "cli/support/command.hpp"
+#include "cli/support/model_file.hpp"
+#include "mesh_import/mesh_file.hpp"
+#include "record/recording_file.hpp"
+#include "session/replay/about.hpp"
+#include "session/telemetry/flight.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes a part of a CAD file or a mesh. Returns the exit code.
+int importInto(const std::string& file, const std::string& part) {
+  if (isCadFile(file)) {
+    CadImport how;
+    how.file = file;
+    how.out = part;
+    return importCad(how);
+  }
+  MeshImport how;
+  how.file = file;
+  how.out = part;
+  return importMesh(how);
+}
+
+/// Makes a scene of one model. Reports what is wrong.
+std::optional<scene::Scene> sceneOf(const std::string& file, ModelFile kind) {
+  std::string quoted;
+  for (const char c : fs::absolute(file).string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  const std::string text = "hapticd: 1\nmodels:\n  - name: model\n    plugin: " +
+                           std::string(kind == ModelFile::kSoft ? "mat_deformable" : "nurbs_rigid") +
+                           "\n    parameters: {geometry: '" + quoted + "'}\n";
+  std::optional<scene::Scene> scene;
+  printProblems(scene::checkText(text, fs::current_path() / "view.yaml", catalog(), &scene), stderr);
+  if (scene) scene->models[0].name = fs::path(file).stem().string();
+  return scene;
+}
+
+/// Builds each model, so that the first one that cannot be built is reported before a page opens.
+Result<void> tryModels(const scene::Scene& scene) {
+  const auto world = servo::World::build(scene, {}, [](int, const std::string&, const std::string&) {});
+  return world ? Result<void>{} : Error{world.error()};
+}
+
+/// Writes a recording of the scene that has no rows.
+Result<void> writeRecording(const scene::Scene& scene, const std::string& file) {
+  scene::Scene empty = scene;
+  empty.models.clear();
+  const auto world = servo::World::build(empty, {}, [](int, const std::string&, const std::string&) {});
+  if (!world) return Error{world.error()};
+  const servo::RunFacts facts;
+  const auto streams = servo::flightStreams(scene, {}, facts.rate, 1, 0);
+  auto recording = record::RecordingFile::create(file, streams, servo::aboutRun(scene, **world, {}, facts, streams));
+  if (!recording) return Error{recording.error()};
+  return (*recording)->close();
+}
+
+}  // namespace
+
+bool Still::is(const std::string& file) {
+  const std::string ending = endingOf(file);
+  for (const char* other : {".yaml", ".yml", ".json", ".hpart", ".ma"})
+    if (ending == other) return true;
+  return isCadFile(file) || importing::isMeshFile(file);
+}
+
+std::unique_ptr<Still> Still::of(const std::string& file, int& exit_code) {
+  std::string folder = (fs::temp_directory_path() / "hapticd-still-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    exit_code = fail(kFailed, folder + ": cannot be created");
+    return nullptr;
+  }
+  std::unique_ptr<Still> still(new Still(folder));
+  exit_code = still->read(file);
+  return exit_code == kWorked ? std::move(still) : nullptr;
+}
+
+Still::~Still() {
+  std::error_code error;
+  fs::remove_all(folder_, error);
+}
+
+/// Returns the exit code.
+int Still::read(const std::string& file) {
+  std::string shown = file;
+  const std::string stem = fs::path(file).stem().string();
+  const bool imported = isCadFile(file) || importing::isMeshFile(file);
+  if (imported) {
+    shown = folder_ + "/" + stem + ".hpart";
+    const int code = importInto(file, shown);
+    if (code != kWorked) return code;
+  }
+  const ModelFile kind = modelFileOf(shown);
+  std::optional<scene::Scene> scene =
+      kind == ModelFile::kNone ? loadSceneOrReport(shown, "", false) : sceneOf(shown, kind);
+  if (!scene) return kBadInput;
+  scene->file = file;
+  scene->devices.clear();
+  if (const auto built = tryModels(*scene); !built) return fail(kBadInput, built.error());
+  if (const auto written = writeRecording(*scene, recording()); !written) return fail(kFailed, written.error());
+  const std::string name = shellWord(file);
+  command_ = kind == ModelFile::kNone ? "hapticd run " + name + " --view"
+             : imported ? "hapticd import " + name + " -o " + shellWord(stem + ".hpart") + " --scene SCENE.yaml"
+                        : "hapticd import " + name + " --scene SCENE.yaml";
+  return kWorked;
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+/// Models that are looked at without a run: of a part, a model file, a scene, or a CAD file or mesh.
+#pragma once
+#include <memory>
+#include <string>
+
+namespace hapticd::cli {
+
+class Still {
+ public:
+  /// [main] True if the file is shown at rest: by its name, anything but a recording.
+  static bool is(const std::string& file);
+
+  /// [main] Reads the file and writes a recording of it that has no arm and no tick. Prints what is wrong.
+  /// @param exit_code receives the exit code if the result is nullptr
+  static std::unique_ptr<Still> of(const std::string& file, int& exit_code);
+  ~Still();  ///< also removes the recording
+  Still(const Still&) = delete;
+  Still& operator=(const Still&) = delete;
+
+  std::string recording() const { return folder_ + "/still.h5"; }
+  /// Returns the command with which the file is felt.
+  const std::string& command() const { return command_; }
+
+ private:
+  explicit Still(std::string folder) : folder_(std::move(folder)) {}
+  int read(const std::string& file);
+
+  std::string folder_, command_;
+};
+
+}  // namespace hapticd::cli
