@@ -131,7 +131,10 @@ struct ParameterTable {
         F::array(
             "hand.pressed", &T::pressed, "s, s", 2, 0, 200, 0, 1e9, "[]",
             "Times in which the hand holds the arm's button down: rows of begin and end. Without a row the arm has "
-            "no button.")};
+            "no button."),
+        F::array("hand.unplugged", &T::unplugged, "s, s", 2, 0, 200, 0, 1e9, "[]",
+                 "Times in which the arm is unplugged: rows of begin and end. So a program can be tried on an arm that "
+                 "is lost and comes back.")};
   }
 };
 

@@ -139,6 +139,18 @@ JointSettings jointsOf(const Parameters& p, int count) {
   return joints;
 }
 
+namespace {
+
+/// Throws std::invalid_argument if a row of times ends before it begins.
+void checkTimes(const std::vector<double>& times, const char* id) {
+  for (size_t i = 0; i + 1 < times.size(); i += 2)
+    if (!(times[i] < times[i + 1]))
+      throw std::invalid_argument(std::string(id) + ": row " + std::to_string(i / 2 + 1) +
+                                  " ends before it begins, expected rows [begin, end] in s, such as [[2, 4]]");
+}
+
+}  // namespace
+
 HandSettings handOf(const Parameters& p) {
   HandSettings hand;
   hand.script = static_cast<Script>(p.script);
@@ -148,10 +160,8 @@ HandSettings handOf(const Parameters& p) {
   hand.approach = p.approach, hand.lead_in = p.lead_in;
   hand.tremor = p.tremor, hand.wander = p.wander;
   hand.seed = static_cast<uint64_t>(p.seed);
-  for (size_t i = 0; i + 1 < p.pressed.size(); i += 2)
-    if (!(p.pressed[i] < p.pressed[i + 1]))
-      throw std::invalid_argument("hand.pressed: row " + std::to_string(i / 2 + 1) +
-                                  " ends before it begins, expected rows [begin, end] in s, such as [[2, 4]]");
+  checkTimes(p.pressed, "hand.pressed");
+  checkTimes(p.unplugged, "hand.unplugged");
   return hand;
 }
 

@@ -35,7 +35,7 @@ struct Parameters {
   double approach = 0, lead_in = 0, tremor = 0, wander = 0;
   std::array<double, 3> center{}, normal{}, axis{};
   std::string path;
-  std::vector<double> pressed;  ///< [s] begin, end, begin, end, ...
+  std::vector<double> pressed, unplugged;  ///< [s] begin, end, begin, end, ...
 
   Kind arm() const { return static_cast<Kind>(kind); }
 };

@@ -63,7 +63,8 @@ class SimulatedArm : public Device, public Parameters {
     sample.time_ns = now_ns_;
     sample.sequence = sequence_;
     sample.flags = HDV_S_CALIBRATED | (torque_sensors ? uint32_t{HDV_S_TORQUE} : 0u);
-    sample.buttons = presses(static_cast<double>(now_ns_ - start_ns_) * 1e-9) ? 1 : 0;
+    if (isWithin(unplugged)) sample.flags |= HDV_S_LOST;
+    sample.buttons = isWithin(pressed) ? 1 : 0;
     const JointVector q = plant_->position(), tau = plant_->transmitted();
     for (int i = 0; i < q.size(); ++i) {
       const double step = joints_.step[i];
@@ -149,10 +150,11 @@ class SimulatedArm : public Device, public Parameters {
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
-  /// Returns whether the hand holds the button down. @param t [s] since the start
-  bool presses(double t) const noexcept HSP_RT {
-    for (size_t i = 0; i + 1 < pressed.size(); i += 2)
-      if (t >= pressed[i] && t < pressed[i + 1]) return true;
+  /// Returns whether the arm is now within one of some times. @param times [s] since the start: begin, end, ...
+  bool isWithin(const std::vector<double>& times) const noexcept HSP_RT {
+    const double t = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
+    for (size_t i = 0; i + 1 < times.size(); i += 2)
+      if (t >= times[i] && t < times[i + 1]) return true;
     return false;
   }
 
@@ -224,7 +226,7 @@ class SimulatedArm : public Device, public Parameters {
     now_ns_ = now_ns;
     const auto late = static_cast<uint64_t>(delay);
     Drive drive = drives_[(written_ + drives_.size() - late) % drives_.size()];
-    if (cut_.load()) {
+    if (cut_.load() || isWithin(unplugged)) {
       drive.position_mode = false;
       drive.torque.setZero();
     }

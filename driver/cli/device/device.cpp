@@ -107,7 +107,7 @@ void printLimits(const scene::Limits& limits, double most) {
                                        diagnostics::enableButtonText(*limits.enable.button))
                                           .c_str());
   std::printf("  ramps      %g s to full force, %g s to zero\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
-              !limits.passivity   ? "on, unless the description says device.verified"
+              !limits.passivity   ? "on for an arm that was never tried on hardware, and where programs may push"
               : *limits.passivity ? "on: a damper takes up energy that the loop creates"
                                   : "off");
 }
@@ -186,7 +186,9 @@ void printDoubts(const scene::Device& description, const host::DeviceInstance& d
   constexpr double kAnyway[3] = {4, -8, 3};
   if (kinematics.gravity(device.handle(), q.data(), kAnyway, torque.data()) < 0) return;
   if (std::all_of(torque.begin(), torque.end(), [](double t) { return t == 0; }))
-    std::printf("  no masses in its description: gravity is not compensated\n");
+    std::printf("  %s: gravity is not compensated\n", hasParameter(device.description(), "arm.masses")
+                                                           ? "no masses in its description"
+                                                           : "its module carries no weight (a vendor's library may)");
 }
 
 /// Prints a message, unless it is an error: errors are also returned as results, and the caller prints them.

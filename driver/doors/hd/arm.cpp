@@ -23,13 +23,13 @@ uint32_t bitOf(HDenum capability) {
   return found != std::end(kCapabilities) ? 1u << (found - std::begin(kCapabilities)) : 0;
 }
 
-constexpr uint32_t kNone = 0,
-                   kStopped = 8;  ///< values of hapticd_state.fault; kStopped: the arm is held, or the daemon ends
+/// Values of hapticd_state.fault. kStopped: the arm is held, or the daemon ends.
+constexpr uint32_t kNone = 0, kDeviceLost = 2, kDeviceFault = 3, kStale = 4, kUncalibrated = 7, kStopped = 8;
 
 /// Returns the HDAPI's error for the daemon's reason for withholding a force (hapticd_state.fault), or HD_SUCCESS if
 /// there is nothing to report.
 HDerror errorOf(uint32_t fault) {
-  constexpr uint32_t kDeviceLost = 2, kStale = 4, kTooFast = 5, kOverheated = 10;
+  constexpr uint32_t kTooFast = 5, kOverheated = 10;
   switch (fault) {
     case kNone:
       return HD_SUCCESS;
@@ -57,9 +57,10 @@ std::string hintOf(const std::string& arm, uint32_t fault) {
   if (fault == kStopped)
     return "the arm " + arm +
            " is held, so it gives no force\n  fix: hapticd ctl clear, after the person who holds the arm has agreed";
-  return "the arm " + arm + " is at fault (" + std::to_string(fault) +
-         "), so it gives no force\n  fix: hapticd ctl status says what it is; hapticd ctl clear lets the force come "
-         "back";
+  const bool ends = fault == kDeviceLost || fault == kDeviceFault || fault == kStale || fault == kUncalibrated;
+  return "the arm " + arm + (fault == kDeviceLost ? " is lost" : " is at fault (" + std::to_string(fault) + ")") +
+         ", so it gives no force\n  fix: hapticd ctl status says what it is; " +
+         (ends ? "the force comes back by itself once the arm works" : "hapticd ctl clear lets the force come back");
 }
 
 double sizeOf(const double v[3]) {

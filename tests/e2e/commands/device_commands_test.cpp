@@ -132,6 +132,20 @@ TEST_F(DeviceCommands, DeviceInfoSaysWhatNobodyTriedAlthoughNothingIsPluggedIn) 
   }
 }
 
+TEST_F(DeviceCommands, SaysOfAnArmBehindAVendorsLibraryWhatIsTrueOfIt) {
+  const std::string arm =
+      put("touch.yaml", "hapticd-device: 1\nmodule: vendor_hd\nname: touch\nparameters: {library: libNothing.so}\n");
+  const Outcome info = run("device info " + arm, kShipped), doctor = run("doctor --seconds 0 " + arm, kShipped),
+                twin = run("device twin " + arm, kShipped);
+  EXPECT_TRUE(has(info.text, "(a vendor's library may): gravity is not compensated")) << info.text;
+  EXPECT_FALSE(has(info.text, "masses")) << info.text;
+  EXPECT_FALSE(has(info.text, "device.verified")) << "it has no such parameter:\n" << info.text;
+  EXPECT_TRUE(has(doctor.text, "fix: install the vendor's driver")) << doctor.text;
+  EXPECT_FALSE(has(doctor.text, "plug it in and switch it on")) << doctor.text;
+  EXPECT_EQ(twin.exit_code, 2);
+  EXPECT_TRUE(has(twin.text, "does not describe its mechanism")) << twin.text;
+}
+
 TEST_F(DeviceCommands, KinematicsWarnsOfJointsBeyondTheArmsLimits) {
   const std::string arm = HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml";
   const Outcome inside =

@@ -6,6 +6,7 @@ PROGRAMS is the folder of the built hd_... programs.
 """
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -285,6 +286,15 @@ def unfeltForce(folder):
         client.clear()
 
 
+def lost(folder):
+    with ArmDaemon(folder, "lost", scene(hand="{radius: 0.02, unplugged: [[3, 8]]}")) as daemon, daemon.connect() as client:
+        program = subprocess.run(daemon.command("unfelt_force", "lost"), env=daemon.environment, capture_output=True, text=True)
+        print(program.stdout, end="")
+        check("unfelt_force lost", program.returncode == 0, program.returncode)
+        check("stderr says that the force comes back by itself", re.search("is lost.*\n.*by itself", program.stderr), program.stderr)
+        check("and so it does", until(lambda: client.status()["devices"][0]["no_force"] is None, 60))
+
+
 def killed(folder):
     """`hapticd client` is killed: the daemon that it started ends, and so does the program."""
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
@@ -354,6 +364,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     two_arms(place)
     six(place)
     outage(place)
+    lost(place)
     unfeltForce(place)
     refused(place)
     command(place)

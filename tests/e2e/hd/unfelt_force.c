@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* unfelt_force.c - what a program hears of a force that is not felt as it was asked for.
  * Usage: unfelt_force limit        a force beyond the limit is one error, while it is clamped
- *        unfelt_force hold         it prints "ready" and waits for the error of a hold */
+ *        unfelt_force hold         it prints "ready" and waits for the error of a hold
+ *        unfelt_force lost         it waits for the error of an arm that is unplugged */
 #include <string.h>
 #include <unistd.h>
 
@@ -44,6 +45,13 @@ int main(int argc, char** argv) {
   hdScheduleAsynchronous(push, NULL, HD_DEFAULT_SCHEDULER_PRIORITY);
   hdStartScheduler();
   run_frames(20);
+  if (strcmp(argv[1], "lost") == 0) {
+    for (i = 0; i < 3000 && found == 0; ++i) usleep(10000), found += count(HD_COMM_ERROR);
+    check("an arm that is lost is one error", found == 1 && count(HD_COMM_ERROR) == 0);
+    hdStopScheduler();
+    hdDisableDevice(hdGetCurrentDevice());
+    return check_result();
+  }
   count(HD_SUCCESS);
   if (strcmp(argv[1], "limit") == 0) {
     check("a force within the limit is no error", count(HD_EXCEEDED_MAX_FORCE) == 0);

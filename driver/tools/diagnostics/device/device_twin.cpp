@@ -224,6 +224,10 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
   const Node &parameters = below(root, "parameters"), &arm = below(parameters, "arm");
   const std::string kind = below(arm, "kind").scalar;
   if (below(root, "module").scalar == "simulated") return Error{file + ": is simulated already"};
+  if (kind.empty())
+    return Error{file +
+                 ": does not describe its mechanism (parameters.arm.kind: phantom, delta or chain), so it has no twin\n"
+                 "  fix: try a scene on the simulated arm that ships: it is the arm of a scene without device:"};
   if (kind != "phantom" && kind != "delta" && kind != "chain")
     return Error{file + ": parameters.arm.kind is \"" + kind +
                  "\", expected phantom, delta or chain: the simulated arm has no other mechanism"};

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "diagnostics/device/arm_controls.hpp"
 #include "host/catalog.hpp"
@@ -33,13 +34,21 @@ Finding silenced(const ArmControls& found, const std::string& file) {
           "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
 }
 
+/// Returns the fix that a module names in a message, or that of an arm that is not there.
+std::string fixOf(const std::string& message) {
+  constexpr std::string_view kFix = "fix: ";
+  const size_t at = message.find(kFix);
+  if (at == std::string::npos) return "plug it in and switch it on; hapticd device list shows what is on the buses";
+  const size_t begin = at + kFix.size();
+  return message.substr(begin, message.find('\n', begin) - begin);
+}
+
 /// Returns a warning if the arm could not be opened. An absent arm is not a fault of the machine, but nothing about it
 /// was tested.
 std::optional<Finding> missing(const ArmControls& found) {
   if (found.opened) return std::nullopt;
   return Finding{found.arm, Verdict::kWarn, "cannot be opened: " + found.why.substr(0, found.why.find('\n')),
-                 "what follows is what its file says; nothing of the arm itself was tried",
-                 "plug it in and switch it on; hapticd device list shows what is on the buses"};
+                 "what follows is what its file says; nothing of the arm itself was tried", fixOf(found.why)};
 }
 
 std::string lowerCase(std::string text) {

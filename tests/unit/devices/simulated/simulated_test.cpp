@@ -76,6 +76,26 @@ TEST(Simulated, TheHandHoldsItsButtonAtTheGivenTimes) {
   }
 }
 
+TEST(Simulated, IsLostAndHasNoMotorsWhileItIsUnplugged) {
+  Module arm, plugged;
+  arm.set("hand.unplugged", std::vector<double>{0.01, 0.03});
+  for (Module* one : {&arm, &plugged}) {
+    one->set("hand.script", kNone);
+    ASSERT_EQ(one->start(), HSP_OK) << one->said;
+  }
+  double moved = 0, pushed = 0;  // [rad] by 5 mN m from 10 ms to 30 ms
+  for (int i = 1; i < 50; ++i) {
+    const bool lost = i >= 10 && i < 30;
+    EXPECT_EQ((arm.read(kMillisecond).flags & HDV_S_LOST) != 0, lost) << "after " << i << " ms";
+    plugged.read(kMillisecond);
+    if (i == 10) moved = -arm.sample.position[0], pushed = -plugged.sample.position[0];
+    if (i == 29) moved += arm.sample.position[0], pushed += plugged.sample.position[0];
+    for (Module* one : {&arm, &plugged}) one->write(HDV_TORQUE, lost ? Vector3d(0.005, 0, 0) : Vector3d(0, 0, 0));
+  }
+  EXPECT_EQ(moved, 0);
+  EXPECT_GT(pushed, 1e-4);
+}
+
 TEST(Simulated, ReportsWholeEncoderCounts) {
   Module arm;
   strokeOf(arm, 300);

@@ -260,7 +260,7 @@ ContactWork pressed(double gain) {
   ContactWork work;
   for (uint64_t tick = 0; tick <= 400; ++tick) {
     const double depth = .005 * std::sin(M_PI * static_cast<double>(tick) / 400);
-    work.add(tick, {0, 500 * depth * (tick > 200 ? gain : 1), 0}, {0, -depth, 0});
+    work.add(tick, {0, 500 * depth * (tick > 200 ? gain : 1), 0}, {0, -depth, 0}, depth);
   }
   return work;
 }
@@ -272,9 +272,19 @@ TEST(ContactWork, OfASpringIsNothingAndOfOneThatGivesMoreWhatItGives) {
   EXPECT_NEAR(spring.given(), kStored, 1e-9);
   EXPECT_NEAR(drives.given(), 1.8 * kStored, 1e-4 * kStored);
   ContactWork gap;
-  gap.add(0, {1, 0, 0}, {0, 0, 0});
-  gap.add(7, {1, 0, 0}, {1, 0, 0});  // the model was out of reach meanwhile
+  gap.add(0, {1, 0, 0}, {0, 0, 0}, 0.01);
+  gap.add(7, {1, 0, 0}, {1, 0, 0}, 0.01);  // the model was out of reach meanwhile
   EXPECT_EQ(gap.given() + gap.taken(), 0);
+}
+
+TEST(ContactWork, OfAMagnetIsThatOfItsSurfaceAlone) {
+  ContactWork work;  // 1 N within 20 mm of a spring of 500 N/m: the hand begins 20 mm above it, and goes 5 mm in
+  for (uint64_t tick = 0; tick <= 400; ++tick) {
+    const double depth = .005 - .025 * std::cos(M_PI * static_cast<double>(tick) / 800);
+    work.add(tick, {0, depth > 0 ? 500 * depth : -1, 0}, {0, -depth, 0}, depth);
+  }
+  EXPECT_NEAR(work.taken(), 0.5 * 500 * .005 * .005, 1e-4);
+  EXPECT_NEAR(work.given(), 0, 1e-4) << "not the 20 mJ that the hand had before the pull";
 }
 
 TEST(ContactWork, OfAHandThatBeginsInsideIsNoMoreThanWasStoredThere) {
