@@ -86,6 +86,8 @@ class BulkTransport final : public Transport {
 
   void close() noexcept override {
     if (handle_ == nullptr) return;
+    // The last command switches the motors off. It must not be cancelled while the device is busy with the one before.
+    while (writing_ && broken_ == Status::kOk && monotonicNow() < written_at_ + kWriteHangs) handleEvents(1'000'000);
     closing_ = true;  // a transfer that completes from now on is not submitted again
     waiting_ = false;
     for (libusb_transfer* read : reads_) (void)libusb_cancel_transfer(read);

@@ -266,6 +266,12 @@ bool EmulatedArm::pushed() const {
 double EmulatedArm::silence() const {
   return inside_->heard < 0 ? HUGE_VAL : inside_->time - inside_->heard;
 }
+int EmulatedArm::searches() const {
+  return inside_->firmware->searches();
+}
+int EmulatedArm::zeros() const {
+  return inside_->firmware->zeros();
+}
 uint64_t EmulatedArm::commands() const {
   return inside_->commands;
 }

@@ -60,6 +60,8 @@ class EmulatedArm {
   bool pushed() const;            ///< a motor has current
   double silence() const;         ///< [s] since the last good command
   uint64_t commands() const;      ///< good ones so far
+  int searches() const;           ///< how often it was told to search its zero
+  int zeros() const;              ///< how often it found it
 
  private:
   struct Inside;

@@ -12,17 +12,28 @@ class Board final : public Firmware {
     state_.counts = counts;
     ++state_.sequence;
     state_.version = fault == Fault::kFirmware ? 2 : 1;
-    state_.state = fault == Fault::kHardware ? 1 | 4 : 1;
+    if (searching_ > 0 && --searching_ == 0) ++zeros_;
+    state_.state =
+        static_cast<uint8_t>((searching_ > 0 && searching_ <= kSearch ? 0 : 1) | (fault == Fault::kHardware ? 4 : 0));
     return state_.bytes();
   }
   std::optional<Currents> command(std::span<const uint8_t> bytes) override {
     const BoardCommand command(bytes);
     if (!command.valid) return std::nullopt;
+    if (command.calibrate && !told_) ++searches_, searching_ = kHears + kSearch;
+    told_ = command.calibrate;
     return command.enabled ? command.current : Currents{};
   }
 
+  int searches() const override { return searches_; }
+  int zeros() const override { return zeros_; }
+
  private:
+  static constexpr int kHears = 50;    ///< reports until it begins to search
+  static constexpr int kSearch = 200;  ///< reports until the hand has moved all joints past their index pulses
   BoardState state_;
+  bool told_ = false;
+  int searches_ = 0, zeros_ = 0, searching_ = 0;
 };
 
 class Wooden final : public Firmware {

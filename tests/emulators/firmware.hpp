@@ -24,6 +24,9 @@ class Firmware {
   virtual std::vector<uint8_t> report(const Counts& counts, Fault fault) = 0;
   /// Nothing: no good command, which a firmware ignores.
   virtual std::optional<Currents> command(std::span<const uint8_t> bytes) = 0;
+  /// How often it was told to search its zero.
+  virtual int searches() const { return 0; }
+  virtual int zeros() const { return 0; }
 };
 
 /// The open interface board (driver/docs/usb_interface_board.md).

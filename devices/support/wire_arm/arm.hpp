@@ -82,7 +82,6 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
-    if (command.mode == HDV_OFF) link_->endCut();
     command_.time = now_ns;
     ++command_.sequence;
     command_.follow = command.mode == HDV_POSITION && follows_;
@@ -97,6 +96,7 @@ class Arm : public Device, public Parameters {
       command_.position[i] = command_.on ? std::clamp(command.position[i], least_[i], most_[i]) : 0.0;
     }
     link_->write(command_);
+    if (command.mode == HDV_OFF) link_->endCut();  // last, so that the I/O thread sends no command from before the cut
     return HSP_OK;
   }
 
@@ -175,7 +175,8 @@ class Arm : public Device, public Parameters {
       wrong.attempt([&] { needCalibrated(draft()); });
     wrong.attempt([&] { takeFirmware(); });
     wrong.check();
-    for (size_t i = 0; i < joints_; ++i) limit_[i] = max_torque[max_torque.size() == 1 ? 0 : i];
+    for (size_t i = 0; i < joints_; ++i)
+      limit_[i] = std::min(max_torque[max_torque.size() == 1 ? 0 : i], largestTorque(i));
     takeLimits();
   }
 
@@ -190,6 +191,17 @@ class Arm : public Device, public Parameters {
     follows_ = wire_.output.has(codec::Role::kFollow);
     velocity_ = wire_.input.has(codec::Role::kVelocity), torque_ = wire_.input.has(codec::Role::kTorque);
     needCalibrated(wire_);
+  }
+
+  /// Returns the largest torque [N m] that a command can have in both directions. If a motor is at its limit, the host
+  /// scales all torques, so that the force keeps its direction. So it must know this limit.
+  double largestTorque(size_t joint) const {
+    double most = HUGE_VAL;
+    for (const codec::Field& field : wire_.output.fields)
+      if (field.role == codec::Role::kTorque && field.index == joint)
+        for (const double raw : {field.least, field.most})
+          most = std::min(most, std::abs(raw * field.scale + field.offset));
+    return most;
   }
 
   /// Returns as much of a wire format with mistakes as can be read; they have been noted before.
@@ -305,9 +317,10 @@ class Arm : public Device, public Parameters {
 
   hsp_status calibrateDevice() {
     constexpr int kLongest = 30'000;  // [ms] time for the user to move every joint past its index mark
+    constexpr int kHeard = 500;       // [ms] an arm that had a zero must first say that it searches for a new one
     RealClock clock(0);
     link_->calibrateByDevice(true);
-    for (int i = 0; i < kLongest && !sample_.calibrated; ++i) {
+    for (int i = 0; i < kLongest && (i < kHeard || !sample_.calibrated); ++i) {
       clock.waitUntil(clock.now() + 1'000'000);
       link_->read(sample_);
     }

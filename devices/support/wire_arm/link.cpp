@@ -50,7 +50,10 @@ Result<Identity> Link::open() {
 }
 
 Result<Identity> Link::bringUp() {
-  auto opened = transport_->open(settings_.address, wire_);
+  Address address = settings_.address;
+  // Another arm of the same kind may be free, and its hand expects no force. So a lost arm is replaced by itself only.
+  if (address.serial.empty()) address.serial = identity_.serial;
+  auto opened = transport_->open(address, wire_);
   if (!opened) return opened;
   auto started = startUp();
   if (started && settings_.prepare) started = settings_.prepare(*transport_);
@@ -239,20 +242,25 @@ void Link::serve(Nanoseconds now) noexcept {
   else
     receive(wait);
   if (open_ && session_.watch(monotonicNow())) publish();
-  if (zero_wanted_.load(std::memory_order_acquire)) {
-    const std::lock_guard lock(mutex_);
-    for (size_t i = 0; i < settings_.session.joints; ++i) offset_[i] = pose_[i] - session_.raw()[i];
-    session_.setZero(offset_);
-    zero_wanted_ = false;
-    zero_done_.store(true, std::memory_order_release);
-  }
+}
+
+/// Takes the present positions as those of the pose. Only good reports say where the arm is now.
+void Link::takeZero() noexcept {
+  const Trouble trouble = session_.trouble();
+  if (trouble != Trouble::kNone && trouble != Trouble::kJump) return;
+  const std::lock_guard lock(mutex_);
+  for (size_t i = 0; i < settings_.session.joints; ++i) offset_[i] = pose_[i] - session_.raw()[i];
+  session_.setZero(offset_);
+  zero_wanted_ = false;
+  zero_done_.store(true, std::memory_order_release);
 }
 
 void Link::receive(Nanoseconds wait) noexcept {
   bool fresh = false;
-  for (int i = 0; i < kMostReportsAtOnce && open_; ++i) {
+  int taken = 0;
+  for (; taken < kMostReportsAtOnce && open_; ++taken) {
     size_t size = 0;
-    const Status status = transport_->receive(in_, size, i == 0 ? wait : 0);
+    const Status status = transport_->receive(in_, size, taken == 0 ? wait : 0);
     if (status == Status::kNothing) break;
     if (status != Status::kOk) return lose(troubleOf(status));
     fresh = session_.receive(monotonicNow(), {in_.data(), size}) || fresh;
@@ -260,7 +268,10 @@ void Link::receive(Nanoseconds wait) noexcept {
   }
   answered_ = answered_ || fresh;
   if (fresh) reported_.store(true, std::memory_order_relaxed);
+  if (fresh && zero_wanted_.load(std::memory_order_acquire)) takeZero();
   if (fresh) publishToServo();
+  // This thread must sleep, because its priority is above the servo's: also if a device sends without end.
+  if (taken == kMostReportsAtOnce) pause(period_ / 2);
 }
 
 /// Publishes the newest sample. If the samples pace the servo, the servo answers each sample at once. So this function
@@ -362,7 +373,8 @@ Result<JointArray> Link::calibrateAt(const JointArray& pose) {
     pause(kMillisecond);
   }
   zero_wanted_ = false;
-  return Error{"sends no reports; it must send reports while it is calibrated"};
+  samples_.update();
+  return Error{"its positions are not known: " + std::string(describe(samples_.front().trouble))};
 }
 
 Identity Link::identity() const {

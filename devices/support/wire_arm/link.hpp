@@ -87,6 +87,7 @@ class Link {
   void forgetOld() noexcept;
   void serve(Nanoseconds now) noexcept;
   void receive(Nanoseconds wait) noexcept;
+  void takeZero() noexcept;
   void send(Nanoseconds now) noexcept;
   Nanoseconds midway(Nanoseconds due) const noexcept;
   void lose(Trouble trouble) noexcept;

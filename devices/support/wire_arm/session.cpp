@@ -7,8 +7,25 @@
 namespace hapticd::wire_arm {
 namespace {
 
+constexpr double kOldReports = 64;  ///< most reports that an arm, a hub or the kernel may keep and send again
+
 double seconds(Nanoseconds from, Nanoseconds to) noexcept {
   return to > from ? static_cast<double>(to - from) * kSecondsPerNanosecond : 0;
+}
+
+/// Returns after how many raw units the number of a field begins anew; infinity for floats.
+double cycleOf(const codec::Field& field) noexcept {
+  if (field.modulo != 0) return static_cast<double>(field.modulo);
+  if (field.type == codec::Type::kFloat) return HUGE_VAL;
+  const auto [least, most] = codec::rangeOf(field.type, field.bits);
+  return most - least + 1;
+}
+
+/// Returns whether a number that grows from report to report says that a report is an old one: it is the same as the
+/// last one, or less than it by at most `old`. @param cycle after this much the number begins anew
+bool isOld(double last, double number, double cycle, double old) noexcept {
+  const double behind = last >= number ? last - number : last - number + cycle;
+  return behind <= std::min(old, cycle / 4);
 }
 
 }  // namespace
@@ -50,10 +67,13 @@ const char* describe(Trouble trouble) noexcept {
 
 Session::Session(const codec::Wire& wire, const SessionSettings& settings)
     : wire_(wire), settings_(settings), framer_(wire.framing, wire.input.bytes()), clock_tells_(wire.clockTells()) {
+  constexpr double kTwoTo32 = 4294967296.0;  // State::sequence has 32 bits
+  sequence_cycle_ = kTwoTo32;
   for (const codec::Field& field : wire_.input.fields) {
-    if (field.role != codec::Role::kPosition || !field.wraps) continue;
-    const auto [least, most] = codec::rangeOf(field.type, field.bits);
-    span_[field.index] = (most - least + 1) * std::abs(field.scale);
+    if (field.role == codec::Role::kSequence) sequence_cycle_ = std::min(sequence_cycle_, cycleOf(field));
+    if (field.role == codec::Role::kTime) clock_cycle_ = cycleOf(field) * field.scale;
+    if (field.role == codec::Role::kPosition && field.wraps)
+      span_[field.index] = cycleOf(field) * std::abs(field.scale);
   }
 }
 
@@ -123,14 +143,15 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
 /// before it.
 void Session::recover(Nanoseconds now) noexcept {
   if (sample_.trouble == Trouble::kJump) return;
+  if (lostCounts()) return raise(now, Trouble::kJump);
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
 }
 
-/// Returns whether the arm sent the same report again: its counter is the same or, without a counter, its clock has not
-/// advanced.
+/// Returns whether the arm sent an old report again: its counter or, without a counter, its clock has not advanced. A
+/// board that is stuck may send the same report again, or the last ones that it keeps in turn.
 bool Session::again() const noexcept {
-  if (state_.has_sequence) return state_.sequence == last_sequence_;
-  return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
+  if (state_.has_sequence) return isOld(last_sequence_, state_.sequence, sequence_cycle_, kOldReports);
+  return state_.has_clock && clock_tells_ && isOld(last_clock_, state_.clock, clock_cycle_, kOldReports / wire_.rate);
 }
 
 /// Returns whether the board has restarted. If so, forgets the positions and the calibration, because the board now
@@ -150,6 +171,7 @@ bool Session::startedAnew(Nanoseconds now) noexcept {
 bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
   const double period = std::max(seconds(good_at_, now), 0.5 / wire_.rate);
   const double most = settings_.health.max_speed * std::max(period, 1 / wire_.rate);
+  if (!state.calibrated) zeroless_at_ = now;
   JointArray next{};
   for (size_t i = 0; i < settings_.joints; ++i) {
     next[i] = state.position[i] + turns_[i];
@@ -161,20 +183,30 @@ bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
     }
     if (std::abs(next[i] - raw_[i]) <= most) continue;
     if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // encoder counts were lost, so the zero is wrong
+    lost_[i] += next[i] - raw_[i];
     raise(now, Trouble::kJump);
   }
   raw_ = next;
   have_raw_ = true;
+  if (seconds(zeroless_at_, now) < settings_.health.recovery) lost_ = {};  // it jumps as it finds its zero
   if (sample_.trouble != Trouble::kJump) return true;
   // An arm with absolute encoders, or one that finds its own zero, is trusted again after some time.
-  const bool absolute = settings_.calibration != Calibration::kPose;
-  if (!absolute || seconds(trouble_at_, now) < settings_.health.recovery) {
+  const bool known = settings_.calibration != Calibration::kPose && !lostCounts();
+  if (!known || seconds(trouble_at_, now) < settings_.health.recovery) {
     good_at_ = now;
     publish(now, state);
     return false;
   }
   sample_.trouble = Trouble::kNone;
   return true;
+}
+
+/// Returns whether an arm that finds its own zero lost counts since then. It does not notice this, and calls itself
+/// calibrated all the same, also after it was plugged in again. If it jumped back, only the wire was wrong.
+bool Session::lostCounts() const noexcept {
+  const double most = settings_.health.max_speed / wire_.rate;
+  return settings_.calibration == Calibration::kDevice &&
+         std::any_of(lost_.begin(), lost_.end(), [most](double lost) { return std::abs(lost) > most; });
 }
 
 void Session::publish(Nanoseconds now, const codec::State& state) noexcept {

@@ -100,6 +100,7 @@ class Session {
   void publish(Nanoseconds now, const codec::State& state) noexcept;
   bool startedAnew(Nanoseconds now) noexcept;
   bool again() const noexcept;
+  bool lostCounts() const noexcept;
 
   codec::Wire wire_;
   SessionSettings settings_;
@@ -107,10 +108,12 @@ class Session {
   Sample sample_;
   codec::State state_;
   JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span_: range after which a position wraps, 0 if it does not wrap
+  JointArray lost_{};                             ///< sum of the jumps of each joint since it had its zero
+  double sequence_cycle_ = 0, clock_cycle_ = 0;   ///< numbers of reports begin anew after so much; clock: [s]
   std::array<Nanoseconds, kRateWindow> arrivals_{};
   std::array<uint64_t, kRateWindow> answered_{};  ///< number of reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
-  Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
+  Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
   bool clock_tells_ = false;  ///< the arm's clock has a new value in each report

@@ -100,6 +100,19 @@ TEST_F(BulkTest, ShortCorruptAndMissingReportsAreNamed) {
                              [](PlayedUsb& d) { d.spoil(Fault::kNone); });
 }
 
+TEST_F(BulkTest, TheLastCommandIsNotCancelledWhileTheDeviceIsBusy) {
+  PlayedUsb device(testbed, 0, left);
+  device.plug();
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return device.pushed(); }));
+  device.takeCommandsAfter(3);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(pushUntil(*link, [](const Sample&) { return true; }));
+  link->close();
+  EXPECT_FALSE(device.pushed()) << "motors off was in a queue of this process when it closed the device";
+}
+
 TEST_F(BulkTest, TheFalconTakesItsFirmwareThroughTheRealLibusb) {
   UsbArm falcon("falcon", emulator::defaultHand("falcon"), "F1");
   falcon.chip().beDifficult(3, 1);

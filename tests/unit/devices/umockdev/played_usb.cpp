@@ -53,6 +53,8 @@ void PlayedUsb::run() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const std::lock_guard lock(mutex_);
     arm_.advance(0.001);  // also without its cable: the board's own watchdog cuts the motors
+    for (Command& command : commands_) --command.after;
+    while (!commands_.empty() && commands_.front().after <= 0) take(commands_.front().urb), commands_.pop_front();
     if (!gone_) feed();
   }
 }
@@ -83,7 +85,9 @@ void PlayedUsb::unplug() {
     const std::lock_guard lock(mutex_);
     gone_ = true;
     for (usbdevfs_urb* urb : waiting_) finish(urb, -ESHUTDOWN);  // as a host controller flushes them
+    for (const Command& command : commands_) finish(command.urb, -ESHUTDOWN);
     waiting_.clear();
+    commands_.clear();
     terminal_.close();
   }
   umockdev_testbed_uevent(testbed_, sys_.c_str(), "remove");
@@ -98,6 +102,10 @@ void PlayedUsb::fail(uint8_t endpoint, int status) {
   const std::lock_guard lock(mutex_);
   failing_ = endpoint;
   failing_status_ = status;
+}
+void PlayedUsb::takeCommandsAfter(int milliseconds) {
+  const std::lock_guard lock(mutex_);
+  slow_ = milliseconds;
 }
 void PlayedUsb::spoil(Fault fault) {
   const std::lock_guard lock(mutex_);
@@ -133,9 +141,16 @@ void PlayedUsb::submit(usbdevfs_urb* urb) {
   }
   if ((urb->endpoint & 0x80) != 0) return waiting_.push_back(urb);
   if (failing_status_ != 0 && failing_ == urb->endpoint) return finish(urb, failing_status_);
-  arm_.out({bytes, static_cast<size_t>(urb->buffer_length)});
+  if (slow_ > 0) return commands_.push_back({urb, slow_});
+  take(urb);
+}
+
+/// A command reaches the arm.
+void PlayedUsb::take(usbdevfs_urb* urb) {
+  arm_.out({static_cast<const uint8_t*>(urb->buffer), static_cast<size_t>(urb->buffer_length)});
   urb->actual_length = urb->buffer_length;
   finish(urb, 0);
+  showDone();
 }
 
 /// Reports into the transfers that wait for them.
@@ -156,6 +171,8 @@ void PlayedUsb::feed() {
 }
 
 bool PlayedUsb::discard(usbdevfs_urb* urb) {
+  if (std::erase_if(commands_, [urb](const Command& command) { return command.urb == urb; }) > 0)
+    return finish(urb, -ENOENT), showDone(), true;
   const auto at = std::find(waiting_.begin(), waiting_.end(), urb);
   if (at == waiting_.end()) return false;
   waiting_.erase(at);

@@ -28,6 +28,8 @@ class PlayedUsb {
   void unplug();
   /// Every transfer of the endpoint ends with this status, such as -EPIPE; 0: none does any more.
   void fail(uint8_t endpoint, int status);
+  /// The endpoint out takes each command only after so many milliseconds.
+  void takeCommandsAfter(int milliseconds);
   void spoil(Fault fault);
   bool pushed();
   uint64_t commands();
@@ -41,6 +43,7 @@ class PlayedUsb {
   bool discard(usbdevfs_urb* urb);
   void feed();
   void finish(usbdevfs_urb* urb, int status);
+  void take(usbdevfs_urb* urb);
   void showDone();
   void run();
 
@@ -53,6 +56,12 @@ class PlayedUsb {
   std::recursive_mutex mutex_;
   bool gone_ = true;
   std::deque<usbdevfs_urb*> waiting_, done_;
+  struct Command {
+    usbdevfs_urb* urb;
+    int after;  // [ms]
+  };
+  std::deque<Command> commands_;
+  int slow_ = 0;
   int failing_status_ = 0;
   uint8_t failing_ = 0;
   std::atomic<int> claimed_{0};

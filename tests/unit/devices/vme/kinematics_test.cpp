@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Kinematics of the shipped Sarcos description: the thumb takes no part, and going there and back again ends where it
 /// began. Eight joints for a point are too many: "back" means the tip, the joints may be others.
+#include <fstream>
 #include <random>
 
 #include "rig.hpp"
+#include "scene/load.hpp"
 
 namespace hapticd::vme {
 namespace {
@@ -72,6 +74,33 @@ TEST(SarcosKinematics, ItIsTheSimulatedArmWithAThumb) {
     ASSERT_TRUE(simulated->gravity(q.head(8), Eigen::Vector3d(0, -9.81, 0), wb));
     EXPECT_LE((wa.head(8) - wb).norm(), 1e-12);
   }
+}
+
+/// Opens the shipped arm over a plain file, after a change of its device file.
+std::unique_ptr<host::DeviceInstance> openChanged(const WindowFile& window, const std::string& from,
+                                                  const std::string& to) {
+  std::ifstream in(kSarcos);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (const auto& [old, now] : {std::pair<std::string, std::string>{"/dev/bus/vme/m0", window.path()}, {from, to}})
+    text.replace(text.find(old), old.size(), now);
+  const std::string file = window.path() + ".yaml";
+  std::ofstream(file) << text;
+  host::Catalog catalog = builtModules();
+  const auto loaded = scene::loadDevice(file, catalog);
+  std::filesystem::remove(file);
+  if (!loaded.device) throw std::runtime_error(loaded.problems.front().text());
+  auto arm = host::DeviceInstance::create(*loaded.device, [](int, const std::string&, const std::string&) {});
+  if (!arm || !(*arm)->open()) throw std::runtime_error("cannot be opened");
+  return std::move(*arm);
+}
+
+TEST(Sarcos, NamesNoLargerTorqueThanItsCommandsCanHave) {
+  const WindowFile window("torque");
+  const std::string field = "- {is: torque, joint: 2, at: 14, type: i16, endian: big, scale: 0.005";
+  EXPECT_DOUBLE_EQ(openChanged(window, field, field)->info().max_torque[1], 95) << "as its file says";
+  // A torque that is cut off on the wire would turn the force on the hand.
+  EXPECT_NEAR(openChanged(window, field, field + ", limit: 4000")->info().max_torque[1], 20, 1e-9);
+  EXPECT_NEAR(openChanged(window, field, field + ", offset: 100")->info().max_torque[1], 32768 * 0.005 - 100, 1e-9);
 }
 
 }  // namespace

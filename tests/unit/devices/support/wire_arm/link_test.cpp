@@ -18,9 +18,10 @@ namespace {
 
 /// A board that streams, at 1 kHz of the real clock unless a test says otherwise.
 struct FakeBoard {
-  std::atomic<bool> plugged{true}, pushed{false}, stalled{false};
-  std::atomic<int> opened{0};
-  int kept = 0;  ///< reports from before anybody read
+  std::atomic<bool> plugged{true}, pushed{false}, stalled{false}, silent{false}, floods{false};
+  std::atomic<int> opened{0}, reports{0}, commands{0};
+  std::string asked_for;  ///< serial number that it was opened by last
+  int kept = 0;           ///< reports from before anybody read
   emulator::BoardState state;
   Nanoseconds next = 0, period = 1'000'000;
   std::atomic<int> prompt{0}, late{0};  ///< answers to the newest report, and to the one before: its sign tells
@@ -29,8 +30,9 @@ struct FakeBoard {
 class FakeTransport final : public Transport {
  public:
   explicit FakeTransport(FakeBoard& board) : board_(board) {}
-  Result<Identity> open(const Address&, const codec::Wire&) override {
+  Result<Identity> open(const Address& address, const codec::Wire&) override {
     if (!board_.plugged) return Error{"not found"};
+    board_.asked_for = address.serial;
     ++board_.opened;
     return Identity{"7", "fake board", "1.0", "plug " + std::to_string(board_.opened)};
   }
@@ -41,8 +43,10 @@ class FakeTransport final : public Transport {
     if (board_.stalled) return Status::kStalled;
     RealClock clock(0);
     const Nanoseconds now = clock.now();
-    if (board_.next > now + wait) return clock.waitUntil(now + wait), Status::kNothing;
-    clock.waitUntil(board_.next);
+    if (board_.floods) board_.next = now;
+    if (board_.silent || board_.next > now + wait) return clock.waitUntil(now + wait), Status::kNothing;
+    if (!board_.floods) clock.waitUntil(board_.next);
+    ++board_.reports;
     board_.next = std::max(board_.next, now - 5 * board_.period) + board_.period;
     ++board_.state.sequence;
     emulator::BoardState state = board_.state;
@@ -55,6 +59,7 @@ class FakeTransport final : public Transport {
   Status send(std::span<const uint8_t> bytes) noexcept override {
     const emulator::BoardCommand command(bytes);
     board_.pushed = command.pushes();
+    ++board_.commands;
     if (command.pushes())
       ++((command.current[0] > 0) == (board_.state.sequence % 2 == 0) ? board_.prompt : board_.late);
     return !board_.plugged ? Status::kGone : command.valid ? Status::kOk : Status::kFailed;
@@ -131,6 +136,7 @@ TEST_F(LinkTest, PushesLosesFindsAndPushesAgain) {
   board.plugged = true;
   ASSERT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == Trouble::kNone && board.pushed; }));
   EXPECT_EQ(board.opened, 2);
+  EXPECT_EQ(board.asked_for, "7") << "another arm of this kind would do as well";
   link->stop();
   EXPECT_FALSE(board.pushed) << "motors are off when the thread ends";
 }
@@ -236,6 +242,27 @@ TEST_F(LinkTest, APoseCalibrationHoldsUntilTheArmIsPluggedInAnew) {
   auto link = make(Calibration::kPose);
   ASSERT_TRUE(link->open());  // opened a second time: the fake says that it was plugged in anew
   EXPECT_FALSE(loadZero(folder, Address{}, link->identity(), 3).known);
+}
+
+TEST_F(LinkTest, AnArmThatFellSilentIsNotCalibratedByItsLastReport) {
+  auto link = make(Calibration::kPose);
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  board.silent = true;
+  ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kStale; }));
+  const auto offset = link->calibrateAt({0.1, 0.2, 0.3});
+  ASSERT_FALSE(offset);
+  EXPECT_NE(offset.error().find("no new reports"), std::string::npos) << offset.error();
+}
+
+TEST_F(LinkTest, ADeviceThatSendsWithoutEndLeavesTimeForTheServo) {
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  board.floods = true;
+  board.reports = board.commands = 0;
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return board.commands > 100; }));
+  EXPECT_LT(board.reports, 160 * board.commands) << "its thread never sleeps";
 }
 
 TEST_F(LinkTest, ADeviceThatSendsNothingDoesNotStart) {

@@ -121,6 +121,12 @@ INSTANTIATE_TEST_SUITE_P(
                               same.sequence = 9;
                               return b = same.bytes(), true;
                             }},
+                      Fault{"alternating", Trouble::kStale,  // a board that is stuck between its two buffers
+                            [](auto& b) {
+                              emulator::BoardState buffer;
+                              buffer.sequence = static_cast<uint16_t>(40000 + g_count++ % 2);
+                              return b = buffer.bytes(), true;
+                            }},
                       Fault{"hardware", Trouble::kHardware,
                             [](auto& b) {
                               emulator::BoardState hot;
@@ -173,8 +179,49 @@ TEST(Session, AJumpOfAnEncoderVoidsAPoseCalibration) {
   EXPECT_TRUE(rig.pushes());
 }
 
-TEST(Session, AJumpOfAnArmThatKnowsItsZeroPasses) {
+TEST(Session, AnArmThatFindsItsZeroAndLosesCountsMustFindItAnew) {
   Rig rig;
+  rig.run(0.5);
+  const Nanoseconds since = rig.now_;
+  rig.board.counts[1] += 20000;  // 2.7 rad: forces would turn round, and the board still calls itself calibrated
+  rig.run(2);
+  EXPECT_LE(rig.pushedFor(since), 0.001);
+  EXPECT_EQ(rig.session_.trouble(), Trouble::kJump);
+  rig.session_.lose(rig.now_, Trouble::kUnplugged);
+  rig.session_.attach(rig.now_, {}, false);
+  rig.run(2);
+  EXPECT_LE(rig.pushedFor(since), 0.001) << "the cable was pulled, and the board had power all the time";
+  rig.board.state = 0;
+  rig.run(0.5);
+  rig.board.state = 1, rig.board.counts[1] -= 20000;
+  rig.run(0.5);
+  EXPECT_TRUE(rig.pushes()) << describe(rig.session_.trouble());
+}
+
+TEST(Session, AnArmMayJumpAsItFindsItsZero) {
+  Rig rig;
+  rig.board.state = 0;
+  rig.run(0.5);
+  rig.board.state = 1, rig.board.counts = {9000, -9000, 9000};
+  rig.run(0.5);
+  EXPECT_TRUE(rig.pushes()) << describe(rig.session_.trouble());
+}
+
+TEST(Session, AReportThatJumpsAndTheNextOneBackIsASlipOfTheWire) {
+  Rig rig;
+  rig.run(0.5);
+  const Nanoseconds since = rig.now_;
+  rig.board.counts[1] += 20000;
+  rig.run(0.002);
+  rig.board.counts[1] -= 20000;
+  rig.run(0.1);
+  EXPECT_LE(rig.pushedFor(since), 0.001);
+  rig.run(0.4);
+  EXPECT_TRUE(rig.pushes());
+}
+
+TEST(Session, AJumpOfAbsoluteEncodersPasses) {
+  Rig rig(Calibration::kNone);
   rig.run(0.5);
   const Nanoseconds since = rig.now_;
   rig.board.counts[1] += 20000;
