@@ -40,12 +40,13 @@ void EnergyAccount::add(const Push& push, LastPush& last) noexcept HSP_RT {
 }
 
 bool EnergyAccount::closeStep(double dt, double reported, double most_force) noexcept HSP_RT {
-  // Friction that sticks is a spring, which may store more than the wall.
-  const double stored = std::max(stored_, reported);
+  // Friction that sticks is a spring, which may store more than the wall; but not more than an arm can put in.
+  const double room = most_force * kWay;
+  const double stored = std::max(stored_, most_force > 0 ? std::min(reported, room) : reported);
   given_ = closed(given_, stored, kMostPower * dt);
   given_by_all_ = closed(given_by_all_, stored, most_force * kSpeed * dt);
   stored_ = 0;
-  return given_ > kMostGiven || (most_force > 0 && given_by_all_ > most_force * kWay);
+  return given_ > kMostGiven || (most_force > 0 && given_by_all_ > room);
 }
 
 }  // namespace hapticd::servo

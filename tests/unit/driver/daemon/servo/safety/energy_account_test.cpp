@@ -75,6 +75,19 @@ TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
   EXPECT_TRUE(found);
 }
 
+TEST(EnergyAccount, AShapeThatReportsToStoreAThousandJoulesGivesBackNoMoreThanAnArmPutsIn) {
+  EnergyAccount account;
+  LastPush last;
+  double x = 0, given = 0;
+  const auto step = [&](double push) {
+    account.add({{push, 0, 0}, {x += 1e-3, 0, 0}, 1e-3, true}, last);
+    return account.closeStep(kTick, 1000, 8);
+  };
+  for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step(-8));  // 40 J
+  while (given < 30 && !step(8)) given += 8e-3;
+  EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven);
+}
+
 TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
   Book book;
   for (int turn = 0; turn < 20; ++turn) {
