@@ -2,6 +2,7 @@
 #include "watch/crash_steps.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -129,6 +130,26 @@ void printForeign(Line& line) noexcept {
   line.add("\n  ");
 }
 
+/// True if the file of the culprit is not the one any more that was loaded.
+bool hasChanged(const Owner* owner) noexcept {
+  struct stat now{};
+  const char* loaded = fileOf(owner);
+  if (*loaded == '\0' || stat(pathOf(owner), &now) != 0) return false;
+  Line identity;
+  identity.addNumber(static_cast<uint64_t>(now.st_size)).add(" bytes of ");
+  identity.addNumber(static_cast<uint64_t>(now.st_mtim.tv_sec)).add(".");
+  identity.addNumber(static_cast<uint64_t>(now.st_mtim.tv_nsec)).add(" ");
+  return std::strncmp(loaded, identity.text(), std::strlen(identity.text())) != 0;
+}
+
+/// A file that is written in place changes the code that runs, and then the plugin itself may be good.
+void printChanged(Line& line) noexcept {
+  if (crash_steps.culprit == nullptr || !hasChanged(crash_steps.culprit)) return;
+  line.add(
+      "its file has changed since it was loaded; if it was written in place, as by cp, the running code changed "
+      "too: replace a plugin by mv or cmake --install, and then start the daemon again\n  ");
+}
+
 /// Adds the command that tests the file of a plugin or a device module.
 Line& addCheck(Line& line, const Owner* owner) noexcept {
   const char* path = pathOf(owner);
@@ -168,6 +189,7 @@ void printMessage(WatchTarget& servo) noexcept {
   if (*crash_steps.black_box.text() != '\0')
     line.add("; the last seconds of the run are in ").add(crash_steps.black_box.text());
   if (servo.drives()) line.add("\n  ");
+  printChanged(line);
   printForeign(line);
   printRemedy(line, servo.drives());
   line.write(STDERR_FILENO);

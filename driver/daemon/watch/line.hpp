@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstddef>
+#include <cstdint>
 
 namespace hapticd::watch {
 
@@ -16,6 +17,13 @@ class Line {
     for (; *text != '\0' && length_ + 1 < sizeof text_; ++text) text_[length_++] = *text;
     text_[length_] = '\0';
     return *this;
+  }
+  Line& addNumber(uint64_t number) noexcept {
+    char digits[24] = "";
+    size_t at = sizeof digits - 1;
+    do digits[--at] = static_cast<char>('0' + number % 10);
+    while ((number /= 10) > 0);
+    return add(&digits[at]);
   }
   /// Adds a plugin's name as part of a file name. Characters such as / are replaced, so that the name cannot lead into
   /// another folder.

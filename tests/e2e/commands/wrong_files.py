@@ -75,6 +75,14 @@ with tempfile.TemporaryDirectory() as folder:  # of arms, check refuses what run
               and place[2] in ran.stderr and "--virtual-time allows" not in ran.stderr, told.stdout + ran.stderr)
         alone = hapticd("check", arm)
         check(f"likewise of the arm alone: {key}", alone.returncode == 2 and f": {key}: " in alone.stdout, alone.stdout)
+    for passivity, clients, warns in ((False, "add", True), (False, "off", False), (True, "add", False)):
+        with open(arm, "w") as out:
+            out.write(shipped.replace("limits: {force: 8.5}", f"limits: {{force: 8.5, passivity: {str(passivity).lower()}}}"))
+        with open(scene, "w") as out:
+            out.write(f"hapticd: 1\ndevice: arm.yaml\nclients: {clients}\nhand: {{radius: 0.046}}\n"
+                      f"models:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {geometry}}}}}\n")
+        told = hapticd("check", scene).stdout
+        check(f"check of passivity {passivity} with clients {clients}", ("limits.passivity: warning: false, and programs may push" in told) == warns, told)
     with open(os.path.join(folder, "path.csv"), "w") as out:
         out.write("t,x,y,z\n" + "".join(f"{i},0,0,{0.06 - 0.0005 * i}\n" for i in range(40)))
     with open(scene, "w") as out:

@@ -91,6 +91,24 @@ def builtAnew(folder, environment):
           hapticd(environment, "plugin", "clear", "deadly")[0] == 2)
 
 
+def overwritten(folder, environment):
+    """A file that is written in place takes the code away that runs. The plugin was good."""
+    file, scene = os.path.join(folder, "plugins", os.path.basename(SHAPES)), os.path.join(folder, "good.yaml")
+    with open(scene, "w") as out:
+        out.write("hapticd: 1\nmodels:\n  - {name: fine, plugin: misbehaving, parameters: {after: 1000000000}}\n")
+    run = subprocess.Popen([HAPTICD, "run", scene, "--for", "20"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    for line in run.stderr:
+        if "runs as" in line:
+            break
+    time.sleep(0.5)
+    os.truncate(file, 0)
+    err = run.communicate(timeout=60)[1]
+    check("a file that is written in place: the message says so, after the motors were switched off",
+          run.returncode == 1 and "written in place" in err and "motors were switched off first" in err, (run.returncode, err))
+    shutil.copy(SHAPES, file)
+    hapticd(environment, "plugin", "clear", "misbehaving")
+
+
 class Manager:
     """The service manager's end of the notification socket."""
 
@@ -159,6 +177,7 @@ with tempfile.TemporaryDirectory() as scratch:
         crash(scratch, surroundings, signal, words)
     slow(scratch, surroundings)
     builtAnew(scratch, surroundings)
+    overwritten(scratch, surroundings)
     service(scratch, surroundings)
     unit(scratch)
 finish()

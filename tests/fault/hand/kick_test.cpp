@@ -232,5 +232,30 @@ TEST(ASurfaceThatTurnsRound, IsSilencedAlthoughTheHandGoesAlong) {
   }
 }
 
+/// Neither without a surface, nor with a jump that is reported, nor with a parameter that is set in each tick.
+TEST(AForceThatGoesAlongWithTheHand, IsSilencedWhateverTheShapeSaysOfItself) {
+  const struct {
+    How how;
+    double jump;
+    bool sets;
+  } kCases[] = {{kTurns, 0, false}, {kTracedTurns, 8, false}, {kTracedTurns, 0, true}};
+  for (const auto& [how, jump, sets] : kCases) {
+    scene::Model model = kicking(how, 8, jump);
+    model.parameters.push_back(value(4, HSP_INT, 60));
+    Scenario scenario({.models = {model}, .limit = bare});
+    double y = 0, given = 0;
+    scenario.run(3, [&](double t) {
+      const double way = t < 0.1 ? 0 : std::lround(1e3 * t - 100) / 60 % 2 == 0 ? 1e-3 : -1e-3;
+      scenario.moveTo({0, y += way, 0});
+      given += scenario.arm().force().y() * way;
+      if (sets) scenario.core().apply({.kind = Order::Kind::kSet, .target = 0, .param = 2, .value = 8}, t);
+      return Nanoseconds{0};
+    });
+    EXPECT_EQ(scenario.trouble(), ShapeFault::kGives) << how << " " << jump << " " << sets;
+    EXPECT_LT(given, 1.5 * 8.5 * EnergyAccount::kWay) << how << " " << jump << " " << sets;
+    EXPECT_GT(given, 1) << "nothing was tried: no test";
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::servo

@@ -65,7 +65,7 @@ struct ModelState {
   Breach breach;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< bounds on the change of its force
-  EnergyAccount energy;       ///< of its surface
+  EnergyAccount energy;       ///< that it gave to the probes
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured

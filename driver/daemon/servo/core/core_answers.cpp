@@ -166,10 +166,12 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
   return false;
 }
 
-/// Returns true if the surface of a model gave energy from nowhere. What is soft gives back what it stored at another
-/// place, a shape that reports jumps gives energy on purpose, and a force without a contact may be a push or a magnet.
+/// Returns true if a model gave energy from nowhere. Only a hard surface is held to what was put in: what is soft gives
+/// back what it stored at another place, a shape that reports jumps gives energy on purpose, and a force without a
+/// contact may be a push or a magnet.
 bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
-  if ((model.shape->description().flags & HSP_C_DEFORMS) != 0 || model.claims.jump > 0) return false;
+  const bool rests = (model.shape->description().flags & HSP_C_DEFORMS) == 0 && !(model.claims.jump > 0);
+  double most_force = 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const hsp_probe& in = inputs_[i];
     const hsp_contact& out = outputs_[i];
@@ -177,12 +179,14 @@ bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
     if ((in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) last.known = false;
     if ((in.flags & HSP_IN_INVALID) != 0) continue;
     const bool touches = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0;
-    Vector3d force = touches ? Vector3d(ConstMap(out.force)) : Vector3d::Zero();
-    if (const double most = uses_.max_force[i], size = force.norm(); most > 0 && size > most) force *= most / size;
-    const Vector3d p = model.claims.moves_itself ? model.frame.pointToModel(last_position_[i]) : ConstMap(in.position);
-    model.energy.add(force, p, touches ? out.depth_m : 0, last);
+    Push push{ConstMap(out.force), ConstMap(in.position), touches ? out.depth_m : 0, touches && rests};
+    if (model.claims.moves_itself) push.position = model.frame.pointToModel(last_position_[i]);
+    const double most = uses_.max_force[i], square = push.force.squaredNorm();
+    if (most > 0 && square > most * most) push.force *= most / std::sqrt(square);
+    most_force = std::max(most_force, most);
+    model.energy.add(push, last);
   }
-  return model.energy.closeStep(dt, model.shape->storedEnergy());
+  return model.energy.closeStep(dt, model.shape->storedEnergy(), most_force);
 }
 
 /// Returns the place of a model on which its force of the last tick acts.

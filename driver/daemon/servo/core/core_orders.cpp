@@ -81,7 +81,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   // A new value may change the force on a resting probe. Such a jump is not the plugin's fault.
   for (uint32_t i = 0; i < probe_count_; ++i) {
     Claim& claim = claims_[at(order.target, i)];
-    pushes_[at(order.target, i)].known = false;
+    pushes_[at(order.target, i)].asked = true;
     if (settings_.former_claims)
       claim.forget();
     else

@@ -6,27 +6,47 @@
 
 namespace hapticd::servo {
 
-void EnergyAccount::add(const Eigen::Vector3d& force, const Eigen::Vector3d& position, double depth,
-                        LastPush& last) noexcept HSP_RT {
-  const double stored = force.norm() * std::max(depth, 0.0);
-  // Nobody knows how a probe that jumped came to its depth, so the contact counts as pressed by a hand.
-  double work = -stored;
-  if (last.known) work = (last.force + force).dot(position - last.position) / 2;
-  // After a late tick, or a jump of the path, a probe that left is far away. It was pushed over its depth alone.
-  if (last.known && force.isZero(0)) work = std::min(work, last.stored / 2);
-  given_ += work;
-  stored_ += stored;
-  last = {force, position, stored, true};
+namespace {
+
+/// Returns what is left of an energy [J] after a step. What friction and damping took cannot be given back, so it must
+/// not hide what is given later. @param stored [J] that may come back @param allowed [J] that may be given in a step
+double closed(double given, double stored, double allowed) noexcept HSP_RT {
+  given = std::max(given, -stored);
+  if (given > 0) given = std::max(0.0, given - allowed);
+  return std::isfinite(given) ? given : 0;
 }
 
-bool EnergyAccount::closeStep(double dt, double reported) noexcept HSP_RT {
-  // What friction and damping took cannot be given back, so it must not hide what is given later. But friction that
-  // sticks is a spring, which may store more than the wall.
-  given_ = std::max(given_, -std::max(stored_, reported));
-  if (given_ > 0) given_ = std::max(0.0, given_ - kMostPower * dt);
+}  // namespace
+
+void EnergyAccount::add(const Push& push, LastPush& last) noexcept HSP_RT {
+  const double stored = push.force.norm() * std::max(push.depth, 0.0);
+  // Nobody knows how a probe that jumped came to its depth, so the contact counts as pressed by a hand.
+  double all = -stored, surface = push.surface ? -stored : 0;
+  if (last.known) {
+    const Eigen::Vector3d half = (push.position - last.push.position) / 2;
+    const double before = last.push.force.dot(half), now = push.force.dot(half);
+    all = before + now;
+    if (!last.asked) surface = (last.push.surface ? before : 0) + (push.surface ? now : 0);
+    // After a late tick, or a jump of the path, a probe that left is far away. It was pushed over its depth alone.
+    if (push.force.isZero(0)) {
+      all = std::min(all, last.stored / 2);
+      surface = std::min(surface, last.stored / 2);
+    }
+  }
+  given_ += surface;
+  given_by_all_ += all;
+  stored_ += stored;
+  last = {push, stored, true, false};
+}
+
+bool EnergyAccount::closeStep(double dt, double reported, double most_force) noexcept HSP_RT {
+  // Friction that sticks is a spring, which may store more than the wall; but not more than an arm can put in.
+  const double room = most_force * kWay;
+  const double stored = std::max(stored_, most_force > 0 ? std::min(reported, room) : reported);
+  given_ = closed(given_, stored, kMostPower * dt);
+  given_by_all_ = closed(given_by_all_, stored, most_force * kSpeed * dt);
   stored_ = 0;
-  if (!std::isfinite(given_)) given_ = 0;
-  return given_ > kMostGiven;
+  return given_ > kMostGiven || (most_force > 0 && given_by_all_ > room);
 }
 
 }  // namespace hapticd::servo

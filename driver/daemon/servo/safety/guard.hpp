@@ -21,7 +21,7 @@ enum class ShapeFault : uint8_t {
   kPulls,      ///< its surface pulled the probe in, although the shape claims only to push
   kTwists,     ///< its torque repeatedly jumped by more than its claims allow
   kRunsAway,   ///< a place of it that was touched repeatedly came faster than any tip does
-  kGives       ///< its surface gave the probes energy from nowhere
+  kGives       ///< it gave the probes energy from nowhere
 };
 
 /// Fades the force of one shape. All times are sums of dt.

@@ -96,9 +96,9 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
     case ShapeFault::kGives:
       return who +
              "gave the hand energy from nowhere: its surface turned round by itself, or pushed more on the way out "
-             "than "
-             "on the way in, as a damping does that is too large for the rate; a shape that gives energy on purpose "
-             "reports HSP_R_JUMPS; it was silenced; test it with: " +
+             "than on the way in, as a damping does that is too large for the rate, or its force went along with the "
+             "hand; a shape that gives energy on purpose reports HSP_R_JUMPS, and may give more; it was silenced; test "
+             "it with: " +
              check;
     case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;

@@ -64,6 +64,7 @@ void judgeArms(const scene::Scene& draft, const UnreadKeys& unread, const ModelT
                document::Problems& problems, document::Problems& warnings) {
   document::append(warnings, fastHands(draft, unread));
   if (!unread.has("clients.max_force")) document::append(warnings, idleBounds(draft));
+  if (!unread.has("clients")) document::append(warnings, unguardedPrograms(draft));
   if (!unread.has("servo.velocity")) {
     if (!unread.has("servo.rate") || draft.servo.velocity.estimator == "butterworth")
       document::append(warnings, lateVelocity(draft, trial.needs_velocity));

@@ -72,6 +72,7 @@ document::Problems warningsOfSettings(const scene::Scene& full, const ModelTrial
   document::append(warnings, slowPaths(full));
   document::append(warnings, softModels(full, catalog));
   document::append(warnings, idleBounds(full));
+  document::append(warnings, unguardedPrograms(full));
   document::append(warnings, quarantinedModels(full));
   document::append(warnings, slowArms(full));
   document::append(warnings, wideScales(full));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "diagnostics/reading/key_place.hpp"
 #include "diagnostics/scene/setting_plausibility.hpp"
 #include "document/reader.hpp"
 #include "hapticd/device.h"
@@ -57,6 +58,18 @@ document::Problems idleBounds(const scene::Scene& scene) {
                        document::numberText(scene.clients.max_force) + " N, but " + device.name + " gives " +
                            document::numberText(bound) +
                            " N at most, so programs get no more; expected this force or less");
+  }
+  return warnings;
+}
+
+document::Problems unguardedPrograms(const scene::Scene& scene) {
+  document::Problems warnings;
+  if (scene.clients.mode == scene::ClientMode::kOff) return warnings;
+  for (const scene::Device& device : scene.devices) {
+    if (device.limits.passivity.value_or(true)) continue;
+    document::report(warnings, placeOfKey(device.file, "limits.passivity").value_or(device.place), "limits.passivity",
+                     "false, and programs may push (clients of the scene): only the force limit is left against a "
+                     "program that goes along with the hand, which gives it energy for ever; leave passivity out");
   }
   return warnings;
 }

@@ -16,4 +16,8 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
 /// [main] Warns of a bound for programs (clients.max_force) above the arm's own limit, because it has no effect.
 document::Problems idleBounds(const scene::Scene& scene);
 
+/// [main] Warns of arms on which programs may push, but whose passivity controller is switched off: a program that goes
+/// along with the hand then gives it energy for ever.
+document::Problems unguardedPrograms(const scene::Scene& scene);
+
 }  // namespace hapticd::diagnostics

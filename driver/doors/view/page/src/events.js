@@ -15,7 +15,7 @@ const kFaults = ['no fault any more', 'a force or position was not a number', 't
 const kFaultUnits = {4: 's', 5: 'm/s', 6: 's', 9: 's', 10: '°C', 11: 'm/s'};
 const kSilenced = ['', 'it lost the surface', 'its force or pose was not a number', 'it returned an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness',
   'its pose is not a unit quaternion', 'it pulled the probe in', 'its torque jumped beyond its stiffness', 'its body ran away',
-  'its surface gave energy from nowhere'];
+  'it gave energy from nowhere'];
 const kJoined = ['a program leads it', 'a program leads its hand', 'a program pushes on it'];
 const kLost = ['no program leads it any more', 'no program leads its hand any more', 'the program pushes no more'];
 /** The text for each kind of event; e has the code and the value of the event. `sort` decides the colour, the sound and

@@ -17,7 +17,7 @@ struct Book {
   EnergyAccount account;
   LastPush last;
   bool step(double x, double force, double depth) {
-    account.add({force, 0, 0}, {x, 0, 0}, depth, last);
+    account.add({{force, 0, 0}, {x, 0, 0}, depth, true}, last);
     return account.closeStep(kTick);
   }
 };
@@ -64,7 +64,7 @@ TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
   EnergyAccount account;
   LastPush last;
   const auto step = [&](double x, double pull) {
-    account.add({-pull, 0, 0}, {x, 0, 0}, 1e-3, last);
+    account.add({{-pull, 0, 0}, {x, 0, 0}, 1e-3, true}, last);
     return account.closeStep(kTick, 0.5 * 100 * x * x);
   };
   for (int i = 0; i <= 100; ++i) ASSERT_FALSE(step(1e-3 * i, 0.1 * i));
@@ -73,6 +73,19 @@ TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
   bool found = false;
   for (int i = 0; i <= 100 && !found; ++i) found = step(1e-3 * i, -0.1 * i);
   EXPECT_TRUE(found);
+}
+
+TEST(EnergyAccount, AShapeThatReportsToStoreAThousandJoulesGivesBackNoMoreThanAnArmPutsIn) {
+  EnergyAccount account;
+  LastPush last;
+  double x = 0, given = 0;
+  const auto step = [&](double push) {
+    account.add({{push, 0, 0}, {x += 1e-3, 0, 0}, 1e-3, true}, last);
+    return account.closeStep(kTick, 1000, 8);
+  };
+  for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step(-8));  // 40 J
+  while (given < 30 && !step(8)) given += 8e-3;
+  EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven);
 }
 
 TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
@@ -102,6 +115,60 @@ TEST(EnergyAccount, ALittlePowerIsAllowedForever) {
   Book book;
   double x = 0;
   for (int i = 0; i < 100000; ++i) ASSERT_FALSE(book.step(x += 0.9 * EnergyAccount::kMostPower * kTick, 1, 0));
+}
+
+/// One probe in a field, or in another thing that has no hard surface.
+struct FieldBook {
+  EnergyAccount account;
+  LastPush last;
+  static constexpr double kForce = 8;  // [N] that the arm lets through
+  bool step(double x, double force) {
+    account.add({{force, 0, 0}, {x, 0, 0}, 0, false}, last);
+    return account.closeStep(kTick, 0, kForce);
+  }
+};
+
+TEST(EnergyAccount, AMagnetDrawsTheHandAcrossTheRoomOfTheArmAsOftenAsItLikes) {
+  FieldBook book;
+  for (int turn = 0; turn < 20; ++turn) {
+    for (int i = 0; i <= 450; ++i) ASSERT_FALSE(book.step(1e-3 * i, 8)) << turn;
+    for (int i = 450; i >= 0; --i) ASSERT_FALSE(book.step(1e-3 * i, 8)) << turn;
+  }
+}
+
+TEST(EnergyAccount, AForceMayLeadAHandSlowlyForEver) {
+  FieldBook book;
+  for (int i = 0; i < 100'000; ++i) ASSERT_FALSE(book.step(0.9 * EnergyAccount::kSpeed * kTick * i, 8));
+}
+
+/// It pushes along with a hand that saws to and fro at 1 m/s.
+TEST(EnergyAccount, AForceThatGoesAlongWithTheHandIsFoundOut) {
+  FieldBook book;
+  double x = 0, given = 0;
+  bool found = false;
+  for (int i = 0; i < 3000 && !found; ++i) {
+    const int way = i / 60 % 2 == 0 ? 1 : -1;
+    given += 8e-3;
+    found = book.step(x += 1e-3 * way, 8 * way);
+  }
+  EXPECT_TRUE(found);
+  EXPECT_LT(given, 1.5 * FieldBook::kForce * EnergyAccount::kWay);
+}
+
+/// A program that sets a parameter in each tick may make a surface give as much, and no more.
+TEST(EnergyAccount, ASurfaceThatAProgramSetsInEachTickIsJudgedAsAField) {
+  EnergyAccount account;
+  LastPush last;
+  double x = 0;
+  bool found = false;
+  for (int i = 0; i < 3000 && !found; ++i) {
+    const int way = i / 60 % 2 == 0 ? 1 : -1;
+    last.asked = true;
+    account.add({{8.0 * way, 0, 0}, {x += 1e-3 * way, 0, 0}, 1e-3, true}, last);
+    found = account.closeStep(kTick, 0, 8);
+    EXPECT_LE(account.given(), 0);
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST(EnergyAccount, NumbersThatOverflowAreForgotten) {
