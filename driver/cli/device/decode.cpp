@@ -162,10 +162,21 @@ document::Problems beyondFields(const DecodeArguments& options, const Described&
   return problems;
 }
 
-/// Returns every row as a report, raw or in hexadecimal digits.
+/// Appends a report to a transfer. Each packet of a transfer from the arm begins with bytes of the USB chip, which are 0
+/// here.
+void appendReport(const codec::Framing& framing, bool from_arm, const std::vector<uint8_t>& report,
+                  std::vector<uint8_t>& transfer) {
+  for (const uint8_t byte : report) {
+    while (from_arm && framing.used && transfer.size() % framing.packet < framing.header) transfer.push_back(0);
+    transfer.push_back(byte);
+  }
+}
+
+/// Returns every row as a report: all of them in one transfer of raw bytes, or each in a line of hexadecimal digits.
 Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
                                 const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
+  std::vector<uint8_t> transfer;
   std::vector<double> joints(HDV_MAX_JOINTS, 0.0);
   capture::Saturation saturation(described.arm.max_torque);
   for (size_t i = 0; i < table.rows(); ++i) {
@@ -176,11 +187,11 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
                                           static_cast<uint32_t>(i + 1));
     if (!bytes) return Error{bytes.error()};
     saturation.add(described.wire, !options.from_arm, columns.names, values->data(), table.lines[i]);
-    if (options.raw)
-      out.append(bytes->begin(), bytes->end());
-    else
-      out += capture::hexText(bytes->data(), bytes->size()) + "\n";
+    if (!options.raw) transfer.clear();
+    appendReport(described.wire.framing, options.from_arm, *bytes, transfer);
+    if (!options.raw) out += capture::hexText(transfer.data(), transfer.size()) + "\n";
   }
+  if (options.raw) out.assign(transfer.begin(), transfer.end());
   for (const std::string& what : saturation.findings())
     std::fprintf(stderr, "warning: %s: %s\n", options.input.c_str(), what.c_str());
   return out;

@@ -64,6 +64,11 @@ TEST_F(Commands, AProcessorThatIsNotThereIsRefused) {
   EXPECT_TRUE(has(outcome.text, "this machine has no processor 1023, expected 0")) << outcome.text;
   EXPECT_TRUE(has(run("run " + put("scene.yaml", kScene) + " --cpu 0.5").text, "\"0.5\" is not a whole number"));
   EXPECT_FALSE(has(run("run --help").text, "1023"));
+  // A daemon file may come from another machine, so the run goes on.
+  const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {cpu: 1023}\n");
+  put("arm.yaml", kArm);
+  const Outcome warned = run("--config " + daemon + " run " + put("scene.yaml", kScene) + " --for 0.1");
+  EXPECT_TRUE(has(warned.text, "fix: one of 0 to ") && has(warned.text, "ticks in 0.10 s")) << warned.text;
 }
 
 TEST_F(Commands, VersionIsOneLine) {

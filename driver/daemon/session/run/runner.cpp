@@ -262,7 +262,9 @@ std::vector<std::string> Runner::enterRealTime() const {
   std::vector<std::string> refused;
   if (options_.cpu)
     if (const auto code = os::pinTo(*options_.cpu))
-      refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
+      refused.push_back("cannot pin the servo thread to processor " + std::to_string(*options_.cpu) + ": " +
+                        code.message() + "\n  it runs on any, beside other programs\n  fix: one of 0 to " +
+                        std::to_string(os::processors() - 1) + " in servo.cpu of the daemon file, or by --cpu");
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated(arms_)));
   [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already

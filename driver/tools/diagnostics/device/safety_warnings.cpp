@@ -60,10 +60,11 @@ void noTorqueLimit(const File& file, const codec::Wire& wire, const host::Device
                      : ", such as 0.05 N m to begin with"));
 }
 
-/// Warns of opposite signs, because forces then pull the hand in instead of pushing it out. A board may reverse a sign,
-/// so one warning for the whole arm is enough, and an arm that was tried has none.
-void oppositeSigns(const File& file, const codec::Wire& wire) {
-  if (file.number("loader") > 0) return;  // the board of a Falcon reverses all three signs
+/// Warns of a torque that has not the sign of its position, because forces then pull the hand in instead of pushing it
+/// out. The board of a Falcon reverses all three signs. Another board may reverse one, so one warning for the whole arm
+/// is enough, and an arm that was tried has none.
+void wrongSigns(const File& file, const codec::Wire& wire) {
+  const bool reversed = file.number("loader") > 0;
   if (file.number("device.verified") > 0) return;
   const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
   if (fields == nullptr) return;
@@ -73,17 +74,18 @@ void oppositeSigns(const File& file, const codec::Wire& wire) {
     for (size_t i = 0; i < std::min(wire.output.fields.size(), fields->items.size()); ++i) {
       const Field& out = wire.output.fields[i];
       if (in.role != Role::kPosition || out.role != Role::kTorque || in.index != out.index) continue;
-      if (in.scale * out.scale > 0) continue;
+      if ((in.scale * out.scale > 0) != reversed) continue;
       joints += fmt::format("{}{}", first ? ", " : "", in.index + 1);
       if (!first) first = i;
     }
   if (first)
     file.warn(
         fields->items[*first], fmt::format("parameters.wire.output.fields[{}].scale", *first),
-        fmt::format("the scale of this torque and the scale of the position of joint {} have opposite signs; unless "
-                    "the board reverses one of them, forces pull the hand in; check with a very small force first, "
-                    "then set device.verified: true, and this warning ends",
-                    joints));
+        fmt::format("the scale of this torque and the scale of the position of joint {} have {}, forces pull the hand "
+                    "in; check with a very small force first, then set device.verified: true, and this warning ends",
+                    joints,
+                    reversed ? "the same sign; if the board reverses torques, as a Falcon's is said to do"
+                             : "opposite signs; unless the board reverses one of them"));
 }
 
 void slowWatchdog(const File& file, const codec::Wire& wire) {
@@ -205,7 +207,7 @@ void warnOfSafety(const Node& root, const scene::Device& device, const host::Dev
   if (!wire) return tooHeavy(file, arm);  // the rest needs the wire format
   noForceLimit(file, arm);
   noTorqueLimit(file, *wire, arm);
-  oppositeSigns(file, *wire);
+  wrongSigns(file, *wire);
   slowWatchdog(file, *wire);
   slowSamples(file, *wire);
   soonStale(file, *wire);

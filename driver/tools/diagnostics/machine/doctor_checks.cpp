@@ -179,14 +179,14 @@ Finding checkGovernor() {
   if (governor.empty() || governor == "performance")
     return ok("governor", governor.empty() ? "not controlled by this system" : governor);
   return {"governor", Verdict::kWarn, governor, "the processor slows down between ticks",
-          "sudo cpupower frequency-set -g performance"};
+          "sudo apt install linux-cpupower && sudo cpupower frequency-set -g performance"};
 }
 
 Finding checkIsolation() {
   const std::string isolated = firstLine("/sys/devices/system/cpu/isolated");
   if (!isolated.empty()) return ok("isolation", "isolated processors: " + isolated + " (hapticd run --cpu N)");
   return {"isolation", Verdict::kWarn, "no isolated processor", "other programs share the servo's processor",
-          "boot with isolcpus=N, then hapticd run --cpu N"};
+          "boot with isolcpus=N; then hapticd run --cpu N, or servo: {cpu: N} in /etc/hapticd/hapticd.yaml"};
 }
 
 Finding checkClock() {
