@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "servo/velocity/estimator_delay.hpp"
 #include "servo/velocity/probe_velocity.hpp"
@@ -44,9 +45,10 @@ document::Problems noisyDamping(const scene::Scene& scene, const scene::Device& 
   if (!estimator || info.resolution_m <= 0) return warnings;
   const double speed = speedOfOneCount(*estimator, rate, info.resolution_m);
   for (size_t i = 0; i < scene.models.size(); ++i)
-    for (const char* key : {"damping", "viscosity"}) {
+    for (const std::string_view key : {"damping", "contact_damping", "viscosity"}) {
       const scene::Value* given = givenIn(scene.models[i].parameters, key);
-      const double force = given != nullptr ? given->number * speed : 0;
+      const bool of_its_swing = key == "damping" && scene.models[i].plugin == "pendulum";  // in N m s/rad
+      const double force = given != nullptr && !of_its_swing ? given->number * speed : 0;
       if (force <= kKnock) continue;
       document::report(
           warnings, given->place.line > 0 ? given->place : scene.models[i].place,

@@ -36,6 +36,9 @@ TEST(NoisyDamping, IsDampingTimesTheSpeedThatOneCountSeemsToHave) {
   EXPECT_NE(told.find("a knock of 3.9 N; expected a damping of at most 1.3 N s/m"), std::string::npos) << told;
   EXPECT_EQ(Noise(1000, 117.8e-6, 10).told(), "") << "0.39 N";
   EXPECT_EQ(Noise(10000, 30e-6, 2).told(), "");
+  Noise swing(10000, 117.8e-6, 10);
+  swing.scene.models[0].plugin = "pendulum";
+  EXPECT_EQ(swing.told(), "") << "it damps the swing, not the hand";
 }
 
 TEST(NoisyDamping, IsGoneWithTheWindowThatItAdvises) {
