@@ -171,6 +171,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     double at[3];
     if (arm == nullptr || !readVector(childOf(childOf(*arm, "state"), "cursor_position"), at)) {
       seen.lost = true;
+      letGo();
       return;
     }
     seen.position[0] = at[0], seen.position[1] = at[2], seen.position[2] = -at[1];
@@ -180,6 +181,13 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     seen.buttons = buttonsOf(message);
     seen.time_ns = monotonicNow();
     ++seen.sequence;
+  }
+
+  /// Asks for no force, and leaves the service: it keeps the last force for a program that is connected.
+  void letGo() {
+    constexpr double kNothing[3] = {};
+    (void)channel_->send(command(kNothing), kPatienceMs);
+    channel_.reset();
   }
 
   /// Returns one bit for each pressed button (a, b, c) of the first handle in the message, or 0 if it has no handle.

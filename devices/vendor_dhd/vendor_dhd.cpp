@@ -130,6 +130,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     double x = 0, y = 0, z = 0, wanted[3];
     if (seen.lost || dhd_.get_position(&x, &y, &z, id()) < 0) {
       seen.lost = true;
+      dhd_.set_force(0, 0, 0, id());  // again and again: the motors keep the last force that reached them
       return;
     }
     seen.position[0] = y, seen.position[1] = z, seen.position[2] = x;

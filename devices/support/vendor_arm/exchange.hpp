@@ -58,12 +58,13 @@ class Exchange {
   /// lost or has a fault, and if the servo has sent no command for 20 ms.
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
+    const bool cut = cut_.load(std::memory_order_acquire);  // before the command is taken
     wanted_.update();
     const ForceCommand& wanted = wanted_.front();
     std::fill_n(out, 3, 0.0);
     const double size = std::hypot(wanted.force[0], wanted.force[1], wanted.force[2]);
     const bool old = monotonicNow() > wanted.time_ns + kOldNs;
-    if (cut_.load(std::memory_order_relaxed) || old || !ok_ || !std::isfinite(size)) return;
+    if (cut || old || !ok_ || !std::isfinite(size)) return;
     const double share = size > max_force_ ? max_force_ / size : 1;
     for (int i = 0; i < 3; ++i) out[i] = wanted.force[i] * share;
   }
@@ -83,13 +84,14 @@ class Exchange {
     return HSP_OK;
   }
   hsp_status write(const hdv_command& command) noexcept HSP_RT {
-    if (command.mode == HDV_OFF) cut_.store(false, std::memory_order_relaxed);
     ForceCommand wanted;
     wanted.time_ns = monotonicNow();
     for (int i = 0; i < 3; ++i)
       if (command.mode == HDV_TORQUE && std::isfinite(command.torque[i])) wanted.force[i] = command.torque[i];
     wanted_.back() = wanted;
     wanted_.publish();
+    // last, so that no command from before the cut is sent
+    if (command.mode == HDV_OFF) cut_.store(false, std::memory_order_release);
     return HSP_OK;
   }
   void cut() noexcept HSP_RT { cut_.store(true, std::memory_order_relaxed); }          ///< [any] no force until HDV_OFF

@@ -251,6 +251,7 @@ void Link::takeZero() noexcept {
   const std::lock_guard lock(mutex_);
   for (size_t i = 0; i < settings_.session.joints; ++i) offset_[i] = pose_[i] - session_.raw()[i];
   session_.setZero(offset_);
+  publish();
   zero_wanted_ = false;
   zero_done_.store(true, std::memory_order_release);
 }

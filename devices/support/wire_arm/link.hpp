@@ -73,7 +73,7 @@ class Link {
   /// device, or if no report has come yet, because it may then be the wrong device.
   bool silence(hdv_silence& how) const;
   /// [rt] Ends a cut: the commands after this call are sent again.
-  void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
+  void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_release); }
 
   /// [main] While `wanted` is true, tells the device to find its zero.
   void calibrateByDevice(bool wanted) noexcept { calibrate_.store(wanted); }

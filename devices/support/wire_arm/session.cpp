@@ -278,7 +278,8 @@ size_t Session::command(Nanoseconds now, const ArmCommand& wanted, std::span<uin
 
 void Session::setZero(const JointArray& zero) noexcept {
   zero_ = zero;
-  calibrated_ = true;
+  calibrated_ = sample_.calibrated = true;
+  for (size_t i = 0; i < settings_.joints; ++i) sample_.position[i] = raw_[i] + zero_[i];
   if (sample_.trouble == Trouble::kJump) sample_.trouble = Trouble::kStale;
 }
 

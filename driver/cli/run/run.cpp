@@ -27,6 +27,7 @@
 #include "log/log.hpp"
 #include "session/requests/run_files.hpp"
 #include "session/run/runner.hpp"
+#include "tune/noisy_damping.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
 
@@ -120,6 +121,7 @@ void warnOfSettings(servo::Runner& runner, double rate) {
       document::report(slow, scene.devices[i].place, "servo.rate", scene.devices[i].name + ": " + why);
     printWarnings(slow, stderr);
     printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
+    printWarnings(tune::noisyDamping(scene, scene.devices[i], runner.arms()[i]->info()), stderr);
   }
 }
 

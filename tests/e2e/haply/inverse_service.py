@@ -44,10 +44,11 @@ LOST, FAULTY, ZERO = 2, 3, {"x": 0, "y": 0, "z": 0}
 class Documented:
     """A service as docs.haply.co describes it for 3.5: an inventory first, then one state for each message."""
 
-    def __init__(self, position, lost_after=None, **status):
+    def __init__(self, position, lost_after=None, garbles=False, **status):
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.port = self.listener.getsockname()[1]
         self.position, self.lost_after, self.heard, self.status = position, lost_after, [], status
+        self.garbles = garbles  # from the moment on at which the arm pushes
         self.thread = threading.Thread(target=self.serve, daemon=True)
         self.thread.start()
 
@@ -71,7 +72,8 @@ class Documented:
             channel.send(self.message(True))
             while self.lost_after is None or len(self.heard) < self.lost_after:
                 self.heard.append(json.loads(channel.receive()))
-                channel.send(self.message(False))
+                force = self.heard[-1]["inverse3"][0]["commands"]["set_cursor_force"]["values"]
+                channel.send("[" if self.garbles and force["y"] < -0.1 else self.message(False))
             channel.close()
         except (ConnectionError, OSError):
             pass
@@ -122,6 +124,13 @@ def troubles(folder):
     run = daemon(folder, "lost", NEAR, service.port)
     with run.connect() as client:
         check("a service that goes is an arm that is lost", until(lambda: last(client, "arm0_fault") == [LOST], 60))
+    run.stop()
+    service = Documented((0, -0.045, 0), garbles=True)
+    run = daemon(folder, "garbled", NEAR, service.port)
+    with run.connect() as client:
+        check("one that answers nonsense, too", until(lambda: last(client, "arm0_fault") == [LOST], 60))
+        check("and is asked to let go, and left", until(lambda: not service.thread.is_alive()) and service.heard[-1]["inverse3"][0]
+              ["commands"]["set_cursor_force"]["values"] == ZERO, service.heard[-1])
     run.stop()
     service = Documented((0, -0.06, 0), power_supply=False)
     run = daemon(folder, "dark", NEAR, service.port)

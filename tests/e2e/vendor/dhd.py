@@ -67,6 +67,10 @@ def is_lost(folder):
     run = start(folder, "lost", FAKE_DHD_LOST="3000")
     with run.connect() as client:
         check("an arm that is unplugged is lost", until(lambda: LOST in client.rows("ticks", last=50)["arm0_fault"]))
+        forces = [line.split()[1:] for line in text(folder, "lost.calls").split("lost\n")[0].splitlines() if line[0].isdigit()]
+        check("while it pushed", abs(float(forces[-1][0])) > 0.2, forces[-1])
+        check("and is told at once to let go", until(lambda: "0.000000000 0.000000000 0.000000000\n" in text(folder, "lost.calls").split("lost\n")[-1]),
+              text(folder, "lost.calls").split("lost\n")[-1])
     run.stop()
     check("which is told", "lost the arm" in run.log(), run.log())
 

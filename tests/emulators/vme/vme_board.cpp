@@ -116,7 +116,9 @@ bool VmeBoard::cycle(const VmeBlock& command, VmeBlock& state, double seconds) {
   arm_->read(now_ns_, sample_);
   ++cycles_;
   if (fault_ == VmeFault::kSilent || (fault_ == VmeFault::kHalfRate && cycles_ % 2 == 0)) return false;
-  fill(state);
+  VmeBlock& last = last_[cycles_ % 2];
+  if (fault_ != VmeFault::kInTurn) fill(last);
+  state = last;
   return true;
 }
 

@@ -17,8 +17,9 @@ namespace hapticd::emulator {
 inline constexpr size_t kVmeBlock = 80;  ///< bytes of either block
 using VmeBlock = std::array<uint8_t, kVmeBlock>;
 
-/// What the board can be told to do wrong.
-enum class VmeFault { kNone, kSilent, kTorn, kCorrupt, kProtocol, kHydraulics, kJump, kHalfRate, kAbsent };
+/// What the board can be told to do wrong. In turn: it sends the last two blocks that it wrote again, one after the
+/// other.
+enum class VmeFault { kNone, kSilent, kTorn, kCorrupt, kProtocol, kHydraulics, kJump, kHalfRate, kAbsent, kInTurn };
 
 class VmeBoard {
  public:
@@ -51,6 +52,7 @@ class VmeBoard {
   std::unique_ptr<host::DeviceInstance> arm_;
   hdv_sample sample_{};
   std::array<double, kJoints> torque_{}, reference_{};
+  std::array<VmeBlock, 2> last_{};
   uint64_t now_ns_ = 1, commands_ = 0, cycles_ = 0;
   double silence_ = 1, since_start_ = 1;
   uint16_t sequence_ = 0, starts_ = 1, heard_ = 0;

@@ -5,8 +5,8 @@
 ///
 /// WINDOW: /dev/bus/vme/s0, or a file, which is made. FILE: a simulated arm of eight joints with its hand, such as
 /// config/devices/simulated-sarcos.yaml. NAME: silent, torn, corrupt, protocol, hydraulics, jump, half-rate, absent,
-/// restart; with --in-force, S counts from the first torque that was ordered. Says "ready" once its first state block
-/// is written, and at the end how many commands came.
+/// in-turn, restart; with --in-force, S counts from the first torque that was ordered. Says "ready" once its first
+/// state block is written, and at the end how many commands came.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -39,7 +39,7 @@ const std::map<std::string, VmeFault> kFaults = {{"silent", VmeFault::kSilent}, 
                                                  {"corrupt", VmeFault::kCorrupt}, {"protocol", VmeFault::kProtocol},
                                                  {"jump", VmeFault::kJump},       {"half-rate", VmeFault::kHalfRate},
                                                  {"absent", VmeFault::kAbsent},   {"hydraulics", VmeFault::kHydraulics},
-                                                 {"restart", VmeFault::kNone}};
+                                                 {"in-turn", VmeFault::kInTurn},  {"restart", VmeFault::kNone}};
 
 std::vector<std::string> faultNames() {
   std::vector<std::string> names;

@@ -8,6 +8,7 @@
 #include "document/reader.hpp"
 #include "hapticd/device.h"
 #include "host/device_instance.hpp"
+#include "tune/noisy_damping.hpp"
 #include "tune/stability.hpp"
 
 namespace hapticd::diagnostics {
@@ -36,6 +37,7 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
       info = (*arm)->info();
     }
     document::append(warnings, tune::unstableSettings(scene, device, info, stiffness));
+    document::append(warnings, tune::noisyDamping(scene, device, info));
     document::append(warnings, stiffTogether(scene, device, info, stiffness));
     document::append(warnings, lightAdmittance(scene, device, info));
     if (givenIn(device.parameters, "wire") != nullptr && info.max_stiffness <= 0 &&

@@ -174,7 +174,9 @@ TEST(Session, AJumpOfAnEncoderVoidsAPoseCalibration) {
   EXPECT_LE(rig.pushedFor(since), 0.001);
   EXPECT_EQ(rig.session_.trouble(), Trouble::kJump);
   EXPECT_FALSE(rig.session_.sample().calibrated);
-  rig.session_.setZero({});
+  rig.session_.setZero({0, 0.25, 0});
+  EXPECT_TRUE(rig.session_.sample().calibrated) << "the next read already finds the pose, which calibrate prints";
+  EXPECT_DOUBLE_EQ(rig.session_.sample().position[1], rig.session_.raw()[1] + 0.25);
   rig.run(0.5);
   EXPECT_TRUE(rig.pushes());
 }
