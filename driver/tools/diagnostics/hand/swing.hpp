@@ -43,7 +43,7 @@ class Swing {
     if (axis.way * (axis.end - x) > kSwing) {
       axis.way = -axis.way;
       double& oldest = axis.turned_at[axis.turns % kTurns];
-      if (axis.turns++ >= kTurns && t - oldest < kWithin) fastest_ = std::max(fastest_, kTurns / 2 / (t - oldest));
+      if (axis.turns++ >= kTurns && t - oldest < kWithin) fastest_ = std::max(fastest_, 0.5 * kTurns / (t - oldest));
       oldest = t;
     }
     if (axis.way * (x - axis.end) > 0) axis.end = x;
