@@ -7,6 +7,7 @@ import json
 import operator
 import os
 import struct
+import weakref
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -87,8 +88,9 @@ class _File:
     """The bytes of a file that others may change and cut."""
 
     def __init__(self, file: str) -> None:
-        self._file = open(file, "rb", buffering=0)
-        self.size = os.fstat(self._file.fileno()).st_size
+        self._fd = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+        weakref.finalize(self, os.close, self._fd)
+        self.size = os.fstat(self._fd).st_size
         self.closed = False  # nothing more may be read but whether the daemon has ended
 
     def read(self, at: int, size: int) -> bytes:
@@ -96,7 +98,7 @@ class _File:
             raise HapticdError(CLOSED, "closed")
         data = b""
         while len(data) < size:
-            more = os.pread(self._file.fileno(), size - len(data), at + len(data))
+            more = os.pread(self._fd, size - len(data), at + len(data))
             if not more:
                 raise HapticdError("the black box of the daemon was cut by another program\n  fix: start the daemon again, then connect again",
                                    "damaged")
@@ -107,7 +109,7 @@ class _File:
         return form.unpack(self.read(at, form.size))
 
     def ended(self) -> bool:
-        data = os.pread(self._file.fileno(), _CLOSED.size, _CLOSED_AT)
+        data = os.pread(self._fd, _CLOSED.size, _CLOSED_AT)
         return len(data) == _CLOSED.size and _CLOSED.unpack(data)[0] != 0
 
 
