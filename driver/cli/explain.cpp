@@ -11,6 +11,7 @@
 
 #include "base/offline_tick.hpp"
 #include "base/os.hpp"
+#include "base/shell_word.hpp"
 #include "cli/recording/explain_recording.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/guarded_command.hpp"
@@ -94,8 +95,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                                            document::numberText(scene.servo.activation_radius) + " m"
                                      : "is traced by its plugin in every tick";
     if (!model.enabled)
-      printLine("  starts", "disabled: neither felt nor traced until it is enabled (hapticd ctl enable " + model.name +
-                                "); what follows is its cost then");
+      printLine("  starts", "disabled: neither felt nor traced until it is enabled (hapticd ctl enable " +
+                                shellWord(model.name) + "); what follows is its cost then");
     printLine("  surfaces", surfaces);
     printLine("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
                           : model.kinematic && model.path.empty() ? std::string("rests until a program moves it")
@@ -180,7 +181,7 @@ int explain(const ExplainArguments& options) {
       return fail(kBadInput, options.scene +
                                  ": is a recording, which is explained in words alone, so --cost, --json and "
                                  "--device do not apply; for numbers, run: hapticd export " +
-                                 options.scene + " --csv FOLDER");
+                                 shellWord(options.scene) + " --csv FOLDER");
     return explainRecording(options.scene);
   }
   auto scene = loadSceneOrReport(options.scene, options.device);

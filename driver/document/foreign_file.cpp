@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/file_ending.hpp"
+#include "base/shell_word.hpp"
 
 namespace hapticd::document {
 
@@ -37,9 +38,9 @@ std::string foreignFile(std::string_view text, const std::string& file) {
   if (ending == ".hpart")
     return "a part, expected YAML: use it as the geometry of nurbs_rigid (for a soft body use a .ma file); to see its "
            "contents, run: hapticd part info " +
-           file;
+           shellWord(file);
   if (text.substr(0, kRecording.size()) == kRecording)
-    return "a recording (HDF5), expected YAML: to run it again, use hapticd replay " + file +
+    return "a recording (HDF5), expected YAML: to run it again, use hapticd replay " + shellWord(file) +
            "; to read what happened, hapticd explain; to draw it, hapticd plot; to look at it, hapticd view";
   const auto is = [&](const Kind& kind) {
     return ending == kind.ending || (!kind.begins.empty() && text.substr(0, kind.begins.size()) == kind.begins);
@@ -48,11 +49,13 @@ std::string foreignFile(std::string_view text, const std::string& file) {
   if (found == std::end(kKinds)) return "";
   const std::string stem = std::filesystem::path(file).stem().string(), part = stem + ".hpart";
   const bool mesh = found->name.find("mesh") != found->name.npos;
-  const std::string soft = mesh ? "for a soft body (mat_deformable), convert it with hapticd import --medial " + file
-                                : "a soft body (mat_deformable) needs a closed mesh of it instead: hapticd import "
-                                  "--medial MESH.stl";
-  return std::string(found->name) + ", expected YAML: convert it with hapticd import " + file + " -o " + part +
-         " and write geometry: " + part + " for nurbs_rigid; " + soft + " -o " + stem + ".ma";
+  const std::string soft =
+      mesh ? "for a soft body (mat_deformable), convert it with hapticd import --medial " + shellWord(file)
+           : "a soft body (mat_deformable) needs a closed mesh of it instead: hapticd import "
+             "--medial MESH.stl";
+  return std::string(found->name) + ", expected YAML: convert it with hapticd import " + shellWord(file) + " -o " +
+         shellWord(part) + " and write geometry: " + part + " for nurbs_rigid; " + soft + " -o " +
+         shellWord(stem + ".ma");
 }
 
 }  // namespace hapticd::document

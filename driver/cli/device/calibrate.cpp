@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/clock.hpp"
+#include "base/shell_word.hpp"
 #include "cli/device/file.hpp"
 #include "cli/support/command.hpp"
 #include "host/device_instance.hpp"
@@ -64,7 +65,7 @@ int calibrateDevice(const CalibrationArguments& options) {
     return fail(kFailed, "device '" + loaded->name +
                              "': not calibrated\n  no force is sent to it\n  fix: follow the instructions above, then "
                              "hapticd device calibrate " +
-                             options.file);
+                             shellWord(options.file));
   printWhere(**device);
   return kWorked;
 }

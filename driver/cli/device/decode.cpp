@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/shell_word.hpp"
 #include "capture/hints.hpp"
 #include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
@@ -204,7 +205,7 @@ std::optional<std::string> tableOf(const DecodeArguments& options) {
     return (void)fail(kBadInput,
                       options.input + ": " + text.error() +
                           "\n  numbers may also come on standard input: echo 0.1,0,0 | hapticd device encode " +
-                          options.file),
+                          shellWord(options.file)),
            std::nullopt;
   if (const std::string line = firstLine(*text); lacksCommas(line))
     return (void)fail(kBadInput, options.input + ": \"" + line.substr(0, 40) +

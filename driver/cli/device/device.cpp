@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/shell_word.hpp"
 #include "cli/device/file.hpp"
 #include "cli/device/joint_angles.hpp"
 #include "cli/support/class_info.hpp"
@@ -39,7 +40,8 @@ void printShippedFiles() {
       std::printf("  %-28s %s, module %s\n", file.filename().c_str(), loaded.device->name.c_str(),
                   loaded.device->module.c_str());
     else
-      std::printf("  %-28s has problems: hapticd check %s\n", file.filename().c_str(), file.c_str());
+      std::printf("  %-28s has problems: hapticd check %s\n", file.filename().c_str(),
+                  shellWord(file.string()).c_str());
   }
 }
 

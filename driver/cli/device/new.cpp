@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shell_word.hpp"
 #include "cli/device/questions.hpp"
 #include "cli/support/command.hpp"
 #include "device_draft/device_draft.hpp"
@@ -61,7 +62,8 @@ void askAll(const Command& command, DeviceDraft& draft) {
 }
 
 /// Prints what to do with the new file.
-void printNextSteps(const DeviceDraft& draft, const std::string& name) {
+void printNextSteps(const DeviceDraft& draft, const std::string& file) {
+  const std::string name = shellWord(file);
   std::printf(
       "%s\n\nthen, step by step (%s, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
@@ -70,7 +72,7 @@ void printNextSteps(const DeviceDraft& draft, const std::string& name) {
       "  hapticd device twin %s                 # the same arm simulated, to try a scene without the real arm\n"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), guide("devices.md").c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(),
+      file.c_str(), guide("devices.md").c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(),
       name.c_str());
   if (draft.isPlanar())
     std::printf(
@@ -103,7 +105,7 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (!problems.empty())
     return fail(kFailed, name +
                              " is written, but cannot be used yet\n  fix: correct these problems, then hapticd check " +
-                             name + "; to begin anew with other options: rm " + name);
+                             shellWord(name) + "; to begin anew with other options: rm " + shellWord(name));
   printNextSteps(draft, name);
   return kWorked;
 }

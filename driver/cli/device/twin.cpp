@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "base/shell_word.hpp"
 #include "cli/device/file.hpp"
 #include "cli/support/command.hpp"
 #include "diagnostics/device/device_trial.hpp"
@@ -23,8 +24,8 @@ int checkTwinFile(const std::string& file, const std::string& out) {
   if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
   printProblems(problems, stderr);
   if (!problems.empty() || !twin.device)
-    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file + ", then rm " +
-                             out + " and write the twin anew");
+    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + shellWord(file) +
+                             ", then rm " + shellWord(out) + " and write the twin anew");
   scene::Scene alone;
   alone.devices.push_back(*twin.device);
   problems = diagnostics::refusedArms(alone, false);
@@ -62,7 +63,7 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())
     std::fprintf(stderr, "warning: %s: %s\n", file.c_str(), borrowed.c_str());
   std::printf("%s\n\nthen:\n  hapticd check SCENE.yaml --device %s\n  hapticd run SCENE.yaml --device %s --view\n",
-              out.c_str(), out.c_str(), out.c_str());
+              out.c_str(), shellWord(out).c_str(), shellWord(out).c_str());
   return kWorked;
 }
 

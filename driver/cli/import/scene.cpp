@@ -192,7 +192,7 @@ std::string instanceLines(const FirstScene& first, const ModelFacts& facts) {
   return fmt::format(
       "      # This is the whole assembly of {} parts. One of them alone, or each as a model that moves by itself:\n"
       "      # instance: {}   # all names: hapticd part info {}\n",
-      facts.instances.size(), yamlText(facts.instances.front()), fileName(first.model));
+      facts.instances.size(), yamlText(facts.instances.front()), shellWord(fileName(first.model)));
 }
 
 std::string modelLines(const FirstScene& first, const ModelFacts& facts) {
@@ -216,7 +216,7 @@ std::string textOf(const FirstScene& first, const ModelFacts& facts) {
       "# A scene to start from, written by `hapticd import {} --scene {}`.\n"
       "# Lengths are in m; x points right, y up, z toward you. After each change: hapticd check {}\n"
       "hapticd: 1\nservo: {{rate: 1000}}\n",
-      fileName(first.from), fileName(first.scene), fileName(first.scene));
+      shellWord(fileName(first.from)), shellWord(fileName(first.scene)), shellWord(fileName(first.scene)));
   if (const auto device = host::shippedFile("devices/simulated-premium15.yaml"))
     text += "# A simulated arm. The device file of a real one goes here (hapticd device new).\ndevice: " +
             yamlText(pathFrom(first.scene, *device)) + "\n";

@@ -187,13 +187,15 @@ std::vector<std::string> axisLines(const brep::Part& part) {
       const brep::Surface& surface = model.part().surfaces[model.part().faces[index].surface];
       if (!axisOf(surface, place, Vector3d::Zero())) continue;
       const Eigen::AlignedBox3d box = boxOf(model, place, index);
-      const Axis axis = *axisOf(surface, place, box.isEmpty() ? Vector3d(place.position) : Vector3d(box.center()));
+      const auto axis = axisOf(surface, place, box.isEmpty() ? Vector3d(place.position) : Vector3d(box.center()));
+      if (!axis) continue;
       const std::string face = kindText(surface) + ": feature " + std::to_string(place.first_feature + i);
-      const auto known = std::find_if(lines.begin(), lines.end(), [&](const Line& one) { return one.axis.same(axis); });
+      const auto known =
+          std::find_if(lines.begin(), lines.end(), [&](const Line& one) { return one.axis.same(*axis); });
       if (known != lines.end())
         known->text += ", " + face;
       else
-        lines.push_back({axis, brep::instancePath(part, place.instance) + ": " + axis.keys() + "  (" + face});
+        lines.push_back({*axis, brep::instancePath(part, place.instance) + ": " + axis->keys() + "  (" + face});
     }
     for (const Line& line : lines) all.push_back(line.text + ")");
   }

@@ -10,6 +10,7 @@
 
 #include "base/counted.hpp"
 #include "base/regular_file.hpp"
+#include "base/shell_word.hpp"
 #include "base/short_number.hpp"
 #include "cli/part/feature.hpp"
 #include "cli/part/poses.hpp"
@@ -240,7 +241,7 @@ int printFeature(const std::string& file, const Part& part, const std::string& a
   if (!feature)
     return fail(kBadInput, file + ": has no feature '" + asked +
                                "', expected a number, or a name as messages have it, such as '" +
-                               brep::featureName(part, 0) + "'; hapticd part info " + file +
+                               brep::featureName(part, 0) + "'; hapticd part info " + shellWord(file) +
                                " says which features each instance has");
   std::printf("%s\n", brep::featureName(part, *feature).c_str());
   try {

@@ -13,6 +13,7 @@
 
 #include "base/clock.hpp"
 #include "base/counted.hpp"
+#include "base/shell_word.hpp"
 #include "cli/plugin/file.hpp"
 #include "cli/plugin/set_option.hpp"
 #include "cli/support/colour.hpp"
@@ -75,7 +76,7 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
       problems.push_back(
           options.file +
           " is a device module, expected a shape plugin; a module is examined with: hapticd device check " +
-          options.file);
+          shellWord(options.file));
       return {};
     }
     // A bare name would be looked up in the system's library folders.

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <memory>
 
+#include "base/shell_word.hpp"
 #include "cli/support/command.hpp"
 #include "host/build_folders.hpp"
 
@@ -87,14 +88,16 @@ fs::path includeFolder() {
 
 /// Prints what to do next. The compiler's command comes first, because it works with and without an installed hapticd.
 void printNextSteps(const std::string& folder, const std::string& name, bool c) {
-  const char *at = folder.c_str(), *what = name.c_str();
-  std::printf("\nbuild it:  %s -O2 -shared -fPIC -I %s %s/%s.%s -o %s/%s.so%s\n", c ? "gcc -std=c11" : "g++ -std=c++20",
-              includeFolder().c_str(), at, what, c ? "c" : "cpp", at, what, c ? " -lm" : "");
-  std::printf("test it:   hapticd plugin check %s/%s.so\n", at, what);
-  std::printf("touch it:  hapticd --plugin-path %s run %s/scene.yaml\n", at, at);
-  std::printf("or with CMake, where hapticd is installed:  cmake -S %s -B %s/build && cmake --build %s/build\n", at, at,
-              at);
-  std::printf("for all users of this machine, after that:  sudo cmake --install %s/build\n", at);
+  const auto in = [&](const std::string& file) { return shellWord((fs::path(folder) / file).string()); };
+  const std::string at = shellWord(folder), library = in(name + ".so"), build = in("build");
+  std::printf("\nbuild it:  %s -O2 -shared -fPIC -I %s %s -o %s%s\n", c ? "gcc -std=c11" : "g++ -std=c++20",
+              shellWord(includeFolder().string()).c_str(), in(name + (c ? ".c" : ".cpp")).c_str(), library.c_str(),
+              c ? " -lm" : "");
+  std::printf("test it:   hapticd plugin check %s\n", library.c_str());
+  std::printf("touch it:  hapticd --plugin-path %s run %s\n", at.c_str(), in("scene.yaml").c_str());
+  std::printf("or with CMake, where hapticd is installed:  cmake -S %s -B %s && cmake --build %s\n", at.c_str(),
+              build.c_str(), build.c_str());
+  std::printf("for all users of this machine, after that:  sudo cmake --install %s\n", build.c_str());
 }
 
 /// Copies the template to a new folder, file by file, and prints their names.

@@ -14,6 +14,7 @@
 #include "base/clock.hpp"
 #include "base/file_ending.hpp"
 #include "base/os.hpp"
+#include "base/shell_word.hpp"
 #include "cli/run/outcome.hpp"
 #include "cli/run/signals.hpp"
 #include "cli/run/view_process.hpp"
@@ -83,7 +84,7 @@ void tellTriedAgain(const scene::Model& model, const std::vector<watch::Quaranti
       "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
           entry.fileForPeople() + (builds > 1 ? "; and " + std::to_string(builds - 1) + " before it" : "") +
           "); the file has changed since, or is another one, so it runs again\n  fix: " + "hapticd plugin check " +
-          model.library.string() + "; once it is repaired: hapticd plugin clear " + entry.plugin);
+          shellWord(model.library.string()) + "; once it is repaired: hapticd plugin clear " + entry.plugin);
 }
 
 /// Removes from the scene the models of plugins that crashed the daemon. They stay out until the file of the plugin

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/regular_file.hpp"
+#include "base/shell_word.hpp"
 #include "record/contact_warnings.hpp"
 
 namespace hapticd::record {
@@ -227,7 +228,7 @@ std::string clientText(const ClientReport& client, double answer_time) {
 }  // namespace
 
 std::string checkCommand(const ModelReport& model) {
-  return "hapticd plugin check" + (model.library.empty() ? "" : " " + model.library);
+  return "hapticd plugin check" + (model.library.empty() ? "" : " " + shellWord(model.library));
 }
 
 Result<void> writeJson(const RunReport& report, const std::string& file) {

@@ -188,7 +188,7 @@ HAPTICD_API long hapticd_columns(hapticd_client* client, int stream, const hapti
 HAPTICD_API uint64_t hapticd_written(hapticd_client* client, int stream);
 /* Copies up to `most` rows, from row number `*row` on, into `rows`. It skips rows that are no longer kept, and sets
  * `*row` to one past the last row that it copied. Never waits. Returns how many rows it copied, 0 if there are no new
- * rows, or -1 if there is no such stream or the daemon has ended. */
+ * rows, or -1 if there is no such stream, the daemon has ended or its black box was cut. */
 HAPTICD_API long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most);
 /* Sleeps until the rows of tick number `tick` are written, at most timeout_ms; the servo wakes the caller. Returns 1 if
  * the rows are written, 0 if they are not written in this time, and -1 if the library cannot wait or the daemon has

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "device_check/module_recipe.hpp"
 
+#include "base/shell_word.hpp"
 #include "hapticd/abi.h"
 #include "host/describe.hpp"
 
@@ -25,7 +26,7 @@ Result<std::vector<scene::Device>> devicesIn(const std::filesystem::path& file) 
   }
   if (devices.empty())
     return Error{file.string() + " holds no device module; a plugin of shapes is tried with: hapticd plugin check " +
-                 file.string()};
+                 shellWord(file.string())};
   return devices;
 }
 

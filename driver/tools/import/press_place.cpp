@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -87,7 +86,7 @@ double HeightMap::seen() const {
 
 PressPlace HeightMap::best() const {
   constexpr double kWeight = 4;  // an even place is worth a way from the middle
-  PressPlace place{box_, Vector3d::Unit(axis_), {}};
+  PressPlace place{box_, Vector3d::Unit(axis_), Vector3d::Zero()};
   place.point = place.middleOfSide();
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kCells; ++i)
@@ -112,14 +111,18 @@ PressPlace pressPlace(const Triangles& mesh) {
   Eigen::AlignedBox3d box;
   for (const auto& corners : mesh.corners)
     for (const std::uint32_t corner : corners) box.extend(mesh.points[corner]);
-  std::optional<HeightMap> chosen;
-  for (const int axis : {2, 1, 0}) {
+  const auto seenAlong = [&](int axis) {
     HeightMap map(box, axis);
     for (const auto& [a, b, c] : mesh.corners) map.add(mesh.points[a], mesh.points[b], mesh.points[c]);
+    return map;
+  };
+  HeightMap chosen = seenAlong(2);
+  for (const int axis : {1, 0}) {
     constexpr double kFar = 2;  // how much broader another side must be
-    if (!chosen || map.seen() > kFar * chosen->seen()) chosen = std::move(map);
+    HeightMap map = seenAlong(axis);
+    if (map.seen() > kFar * chosen.seen()) chosen = std::move(map);
   }
-  return chosen->best();
+  return chosen.best();
 }
 
 }  // namespace hapticd::importing

@@ -67,6 +67,8 @@ int main(int count, char** given) {
   tell("ask", hapticd_ask(c, "{\"do\":\"status\"}", answer, sizeof answer, &error) >= 0);
   *error.code = '\0';
   tell("wait", hapticd_wait(c, hapticd_written(c, 0), 50) >= 0);
+  for (int stream = 0; stream < 16; ++stream) /* again, for what has happened to the file meanwhile */
+    if (hapticd_columns(c, stream, NULL, NULL) >= 0) readStream(c, stream);
   for (int device = -1; device < 3; ++device) {
     tell("state", hapticd_next_state(c, device, UINT64_MAX, 50, &state) >= 0);
     tell("jacobian", hapticd_read_jacobian(c, device, &jacobian) >= 0);

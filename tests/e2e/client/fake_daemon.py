@@ -55,6 +55,8 @@ attempt("ask", h.status)
 attempt("models", lambda: h.models)
 attempt("state", lambda: h.state("{ARM}") if "{ARM}" in h.devices else None)
 attempt("wait", lambda: h.wait(h.streams["ticks"].written, 0.05) if "ticks" in h.streams else None)
+for name, stream in h.streams.items():
+    attempt("again", lambda: (stream.last(8), stream.read(0, 8)))
 for of in (lambda: h.lead_model("{MODEL}"), lambda: h.lead_hand("{ARM}"), lambda: h.lead_force("{ARM}")):
     attempt("lead", lambda: lead(of()))
 h.close()
@@ -111,19 +113,20 @@ class Fake:
         self.server.close()
 
 
-def programs(folder):
-    """What both programs print, and their exit codes."""
+def programs(folder, before=lambda: None):
+    """What both programs print, and their exit codes. @param before prepares the run of each"""
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, PYTHONPATH=CLIENT)
     for words in ([CALLS, NAME, ARM, MODEL], [sys.executable, "-c", PROGRAM]):
+        before()
         done = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=PATIENCE)
         yield words[0], done.returncode, done.stdout, done.stderr
 
 
-def survives(what, folder, answer, lacks=()):
+def survives(what, folder, answer, lacks=(), before=lambda: None):
     """Both programs end by themselves. @param lacks calls that must not have worked"""
     fake = Fake(folder, answer)
     try:
-        for program, code, out, err in programs(folder):
+        for program, code, out, err in programs(folder, before):
             worked = [word for word in lacks if f"{word}: ok" in out]
             check(f"{what}, {os.path.basename(program)}", code == 0 and not worked, (code, out, err[-1500:]))
     except subprocess.TimeoutExpired as error:
@@ -178,6 +181,15 @@ def memories(folder):
     survives("many descriptors", folder, lambda r: (good(r, bytes=4096), [memory(4096) for _ in range(250)], False))
 
 
+def cutting(file, size):
+    """Cuts the black box as soon as the program asks for the status, which it does between two looks at the rows."""
+    def answer(request):
+        if request["do"] == "status":
+            os.truncate(file, size)
+        return good(request, models=[]), [], False
+    return answer
+
+
 def boxes(folder, whole):
     """Black boxes with changed bytes, of another version, cut."""
     file, chance = os.path.join(folder, NAME + ".blackbox.h5"), random.Random(1)
@@ -198,6 +210,8 @@ def boxes(folder, whole):
                           ("another version", changed(512, b"hapticd-recording/2\0")), ("rows cut away", data[:blocks_at + 64])):
         write(content)
         survives(what, folder, quiet, ("connect",))
+    for what, size in (("nothing is left", 0), ("the description is left", blocks_at), ("half of the rows", len(data) // 2)):
+        survives(f"a black box that is cut while it is read: {what}", folder, cutting(file, size), before=lambda: write(data))
     newer = json.loads(data[about_at:about_at + about_bytes])
     for column in newer["columns"]["events"]:
         column["since"] = "2.0"

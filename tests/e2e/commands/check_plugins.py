@@ -249,6 +249,12 @@ for shape in ("drawn_right", "drawn_in_contact"):
 warned = [t["why"] for t in tests if (t["plugin"], t["name"], t["result"]) == ("only_bounds", "bounds-where-felt", "warn")]
 check("bounds that leave out what is felt are warned of, without a drawing too", warned and "mm outside" in warned[0], warned)
 
+# Random parameters and probes come after the tests, for as long as is asked for.
+for more in ((), ("--fuzz", "1")):
+    code, tests, _, err = examined(os.path.join(SHIPPED, "template.so"), *more)
+    runs = [int(re.match(r"(\d+) runs of 500 steps", t["why"])[1]) for t in tests if t["name"] == "fuzz"]
+    check(f"{' '.join(more) or 'no --fuzz'}: {'some' if more else 'no'} random runs", code == 0 and (runs != [] and runs[0] > 0 if more else runs == []), (code, runs, err))
+
 # Parameters are checked as those of a scene, before any test runs, and all of them at once.
 NEEDY = os.path.join(BROKEN, "needy.so")
 

@@ -313,6 +313,11 @@ def refused(folder):
     for given, meant in (("CRC16", "crc16"), ("modbus", "crc16-modbus"), ("crc-32", "crc32"), ("summ", "sum")):
         new = hapticd("device", "new", "a3", "--no-questions", "--checksum", given, cwd=folder)
         check(f"for the checksum {given} a name is proposed", new.returncode == 2 and f'did you mean "{meant}"?' in new.stderr, new)
+    for count in (0, 1, 3):
+        new = hapticd("device", "new", f"buttons{count}", "--no-questions", "--buttons", f"{count}", cwd=folder)
+        report = hapticd("device", "decode", f"buttons{count}.yaml", "-", cwd=folder, input="00 " * 8 + ("ff" if count else "")).stdout
+        row = dict(zip(*(line.split(",") for line in report.splitlines()[:2])))
+        check(f"an arm with {count} buttons reports so many", new.returncode == 0 and int(row.get("buttons", 0)) == 2**count - 1, (new, report))
     double = os.path.join(folder, "double.yaml")
     with open(double, "w") as out:
         out.write(WIRED.replace("exchange: stream", "exchange: pull").replace("joint: 2, at: 4", "joint: 1, at: 4"))

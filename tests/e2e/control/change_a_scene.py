@@ -4,6 +4,7 @@
 Usage: change_a_scene.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import atexit
+import json
 import os
 import shutil
 import signal
@@ -118,6 +119,24 @@ def words_of_answers(client, folder):
     check("a model that the scene does not have is met with those that it has", 'no model "bal", expected one of ball' in told, told)
 
 
+def sorted_lines(environment, client, folder):
+    """top has the models in the order that --sort asks for."""
+    top = lambda *words: [m["name"] for m in json.loads(subprocess.run([HAPTICD, "top", "--name", "changed", "--once", "--json", *words], env=environment,
+                                                                       capture_output=True, text=True, timeout=60).stdout)["models"]]
+    with client.lead_hand(ARM) as hand:
+        hand.put([0.03, 0, 0])
+        for name, x in (("a_far", 0.6), ("z_near", -0.07)):
+            client.ask(do="add", file=write(folder, name, [(name, x)]))
+        hand.put([0.055, 0, 0])  # in the ball
+        check("the ball is pressed", until(lambda: largest(client, 20) > 0.5, 30))
+        for by, order in (("name", ["a_far", "ball", "z_near"]), ("depth", ["ball", "z_near", "a_far"])):
+            check(f"top sorts by {by}", until(lambda: top("--sort", by) == order, 30), top("--sort", by))
+        check("top sorts by force", until(lambda: top("--sort", "force")[0] == "ball", 30), top("--sort", "force"))
+        hand.put([0.03, 0, 0])
+        for name in ("a_far", "z_near"):
+            client.ask(do="remove", model=name)
+
+
 def stopped(run, environment, client):
     """A daemon that was stopped looks alive by its files."""
     top = lambda: subprocess.run([HAPTICD, "top", "--name", "changed", "--once"], env=environment, capture_output=True, text=True, timeout=60)
@@ -196,6 +215,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     with hapticd.connect("changed", folder=scratch) as client:
         around_the_tip(client, write(scratch, "ball", [("ball", 0.1)]))
         away_from_the_tip(client)
+        sorted_lines(environment, client, scratch)
         client.ask(do="remove", model="ball")
         words_of_answers(client, scratch)
         permission(client, scratch)

@@ -109,6 +109,9 @@ def kinematic(daemon):
           daemon.until(lambda: daemon.models().get("door", {}).get("kinematic") is True))
     daemon.expect(0, "move", "door", "--position", "0.1", "0.02", "0", "--seconds", "0.5")
     time.sleep(0.8)  # s: it is there now, and stays
+    daemon.expect(0, "move", "door", "--position", "0.1", "0.02", "0", "--orientation", "0", "0", "1", "0", "--seconds", "2")
+    turned = lambda: abs(daemon.models().get("door", {"pose": {"orientation": [1, 0, 0, 0]}})["pose"]["orientation"][2]) > 0.999
+    check("a model is turned, too", daemon.until(turned), daemon.models().get("door"))
     for place in ("0.9", "0.1"):  # each at once: neither where it was sent before nor the way back makes it faster
         answer = daemon.ask("move", "door", "--position", place, "0.02", "0", "--seconds", "0.05")
         check("a move that is too fast is slowed and says so",

@@ -4,6 +4,8 @@
 Usage: trace_truth.py HAPTICD TEST_PLUGINS     prints one line per case; exit 1 when one is off.
 Each case writes a scene, a model and a probe path, runs the program as a user would, and compares every row.
 """
+import csv
+import json
 import math
 import os
 import sys
@@ -32,6 +34,21 @@ def sphere(radius):
 
 def trace(surfaces, samples, **keys):
     return traced.trace(HAPTICD, surfaces, samples, **keys)[0]
+
+
+def writes_the_models_that_are_asked_for():
+    with tempfile.TemporaryDirectory() as folder:
+        write(folder, "ball.json", json.dumps({"format": "hapticd-model/1", "surfaces": [sphere(0.05)]}))
+        scene = write(folder, "scene.yaml", "hapticd: 1\nmodels:\n" + "".join(
+            f"  - {{name: {name}, plugin: nurbs_rigid, pose: {{position: [{x}, 0, 0]}}, parameters: {{geometry: ball.json}}}}\n"
+            for name, x in (("left", -0.06), ("middle", 0), ("right", 0.06))))
+        probe, out = write(folder, "probe.csv", "t,x,y,z\n0,0,0.06,0\n0.001,0,0.06,0\n"), os.path.join(folder, "out.csv")
+        for words, names in (((), {"left", "middle", "right"}), (("--models", "right,left"), {"left", "right"}), (("--models", "middle"), {"middle"})):
+            code, _, err = program(HAPTICD)("trace", scene, "--probe", probe, "--out", out, *words)
+            told = {row["model"] for row in csv.DictReader(open(out))} if code == 0 else err
+            check(f"{' '.join(words) or 'no --models'}: these models are written", told == names, told)
+        code, _, err = program(HAPTICD)("trace", scene, "--probe", probe, "--out", out, "--models", "centre")
+        check("a model that is none is named", code == 2 and 'no model "centre"' in err and "middle" in err, err)
 
 
 def says_why_a_model_is_silenced():
@@ -148,5 +165,6 @@ def boxes(h=0.04):
 spheres()
 bad_samples()
 boxes()
+writes_the_models_that_are_asked_for()
 says_why_a_model_is_silenced()
 finish()

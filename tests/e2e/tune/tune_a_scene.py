@@ -152,6 +152,16 @@ with tempfile.TemporaryDirectory() as folder:
     assert [t["ticks"] for t in touches] == [0] and touches[0]["nearest_m"] > 0, touches
     assert "does not touch" not in out, out
 
+    # A tolerance of the force is a goal of its own: a setting that misses it is not good enough, however far off a foot may be.
+    coarse = scene(folder, "teapot", ", method: dpt")
+    for most in (1e-6, 10.0):
+        subprocess.run([hapticd, "tune", coarse, "--motion", f"{folder}/run.h5", "--limit-seconds", "4", "--tolerance-um", "1e5", "--force-tolerance-n", f"{most}",
+                        "--json", f"{folder}/force.json"], capture_output=True)
+        told = json.load(open(f"{folder}/force.json"))
+        forces, chosen = [c["force_n"] for c in told["candidates"]], told["candidates"][told["chosen"]]
+        assert 1e-6 < forces[0] < 10, f"the scene as it is has an error of {forces[0]} N"
+        assert told["reached"] == (min(forces) <= most) and (chosen["force_n"] <= most or not told["reached"]), (most, told["reached"], forces, chosen)
+
     # A goal that nothing reaches: the nearest is chosen, and the exit code says so.
     assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "2", "--budget-us", "0.001", code=1)
     open(f"{folder}/empty.yaml", "w").write("hapticd: 1\nmodels: []\n")

@@ -241,6 +241,7 @@ test('space holds and clears, and the events tell', async () => {
     await page.keyboard.press('Space');
     await until(async () => (await force()) === 0, kPatience, 'no force');
     await page.locator('#hold b', {hasText: 'Clear'}).waitFor();
+    assert.equal(await page.locator('#run-tools button:visible', {hasText: 'Clear'}).count(), 1, 'one button clears the hold');
     await page.keyboard.press('Space');
     await until(async () => (await force()) > 0.1, kPatience, 'the force again');
     await page.getByRole('tab', {name: 'Events'}).click();

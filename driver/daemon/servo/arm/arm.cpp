@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/code_owner.hpp"
+#include "base/shell_word.hpp"
 #include "servo/arm/velocity_use.hpp"
 #include "servo/safety/held_command.hpp"
 #include "servo/velocity/estimator_delay.hpp"
@@ -81,7 +82,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       stuck_words_(
           "a tick did not end, as its module did not return, and the watchdog cut the motors; find the cause "
           "with: hapticd device check " +
-          described.file.string()),
+          shellWord(described.file.string())),
       former_passivity_(options.former_passivity) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,

@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "base/shell_word.hpp"
 #include "hapticd/abi.h"
 #include "log/log.hpp"
 #include "servo/safety/fault.hpp"
@@ -147,7 +148,7 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
               "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
               "machine was too busy, or a call of an arm's module took that long (compare \"in arms\" in the report of "
               "the run, or try: hapticd device check {})",
-              event.value, event.t, devices_.size() == 1 ? devices_[0].file : "FILE")};
+              event.value, event.t, devices_.size() == 1 ? shellWord(devices_[0].file) : "FILE")};
     default:
       return {HSP_LOG_DEBUG, "", ""};
   }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/shell_word.hpp"
 #include "servo/core/core.hpp"
 
 namespace hapticd::servo {
@@ -42,6 +43,11 @@ std::string causeOf(const Breach& pull) {
   return pull.depth == 0 ? "its depth_m was left at 0 inside, or " + sign : sign;
 }
 
+/// Returns a file for a command; the words of fileOfPlugin() stay as they are.
+std::string wordOf(const std::string& file) {
+  return file.starts_with("FILE.so ") ? file : shellWord(file);
+}
+
 }  // namespace
 
 std::string fileOfPlugin(const std::string& plugin) {
@@ -67,7 +73,7 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
 
 std::string silenceReason(const std::string& model, const std::string& file, ShapeFault fault, int32_t failed_status,
                           const Breach& breach) {
-  const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + file;
+  const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + wordOf(file);
   switch (fault) {
     case ShapeFault::kNone:
     case ShapeFault::kLost:

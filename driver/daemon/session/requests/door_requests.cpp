@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/shell_word.hpp"
 #include "session/messages/program_name.hpp"
 #include "session/requests/request_handler.hpp"
 #include "session/requests/wait_until.hpp"
@@ -56,8 +57,8 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
     if (!place && armOf(request.model))
       return refuse("unknown",
                     "\"" + request.model +
-                        "\" is an arm, not a model\n  fix: lead its simulated hand: hapticd ctl lead --hand \"" +
-                        request.model + "\"");
+                        "\" is an arm, not a model\n  fix: lead its simulated hand: hapticd ctl lead --hand " +
+                        shellWord(request.model));
     if (!place) return Error{place.error()};
     if (!places_[*place].model.kinematic)
       return refuse("unsupported", "model \"" + request.model +

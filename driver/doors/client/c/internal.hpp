@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,10 +25,8 @@ namespace hapticd::client {
 class Mapping {
  public:
   Mapping() = default;
-  /// Maps a file. After an error, data() is nullptr and errno says why. @param bytes 0 for the whole file
-  Mapping(int fd, size_t bytes, int protection);
   /// Maps memory that a daemon has passed. It must be sealed against shrinking: else this process could be killed while
-  /// it reads.
+  /// it reads. After an error, data() is nullptr and errno says why. @param bytes 0 for all of it
   static Mapping sealed(int fd, size_t bytes, int protection);
   Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), bytes_(other.bytes_) {}
   Mapping& operator=(Mapping&& other) noexcept {
@@ -44,6 +43,7 @@ class Mapping {
   }
 
  private:
+  Mapping(int fd, size_t bytes, int protection);
   std::byte* data_ = nullptr;
   size_t bytes_ = 0;
 };
@@ -51,16 +51,16 @@ class Mapping {
 /// One stream of the black box.
 struct Stream {
   std::string name;
-  uint64_t* written = nullptr;  ///< number of rows written so far, in the memory of the daemon
-  uint64_t* rows = nullptr;
-  uint64_t handed = 0;  ///< number of rows up to the newest one that some thread has read
+  uint64_t written_at = 0;  ///< place in the file of the number of rows written so far
+  uint64_t rows_at = 0;     ///< place in the file of the rows
+  uint64_t handed = 0;      ///< number of rows up to the newest one that some thread has read
   uint64_t capacity = 0;
   size_t row_words = 0;
   std::list<std::string> texts;  ///< owns the texts to which the columns point
   std::vector<hapticd_column> columns;
 };
 
-/// The black box of a daemon.
+/// The black box of a daemon. It is read and not mapped, because the kernel kills a program whose mapped file is cut.
 class RowFile {
  public:
   static Result<RowFile> open(const std::string& file);
@@ -73,14 +73,21 @@ class RowFile {
   bool ended() const;
   /// True if `file` is still the file that was opened. Another daemon of this name would have replaced it.
   bool isFile(const std::string& file) const;
-  static uint64_t written(const Stream& stream);
-  static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
+  /// Returns how many rows were ever written; nothing if the file was cut.
+  std::optional<uint64_t> written(const Stream& stream) const;
+  /// Copies rows as hapticd_read() does. Returns -1, and leaves `row`, if the file was cut.
+  long read(const Stream& stream, uint64_t& row, void* rows, size_t most) const;
 
  private:
   Result<void> readStreams();
   Result<void> readBlocks(uint64_t place);
   Result<void> readAbout();
-  Mapping memory_;
+  bool copy(uint64_t place, void* to, size_t bytes) const;
+  bool copyRows(const Stream& stream, uint64_t first, uint64_t count, void* rows) const;
+  /// True if all these bytes were in the file when it was opened.
+  bool has(uint64_t place, uint64_t bytes) const { return place <= size_ && bytes <= size_ - place; }
+  Descriptor file_;
+  uint64_t size_ = 0;
   std::string about_;
   std::vector<Stream> streams_;
   std::vector<std::string> devices_;

@@ -18,10 +18,6 @@ namespace hapticd::client {
 
 namespace {
 
-uint64_t load(uint64_t& word, std::memory_order order) {
-  return std::atomic_ref<uint64_t>(word).load(order);
-}
-
 const char* kept(Stream& stream, const nlohmann::json& column, const char* key) {
   return stream.texts.emplace_back(column.at(key).get<std::string>()).c_str();
 }
@@ -29,14 +25,13 @@ const char* kept(Stream& stream, const nlohmann::json& column, const char* key) 
 }  // namespace
 
 Result<RowFile> RowFile::open(const std::string& file) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return Error{"cannot read " + file + ": " + std::strerror(errno)};
   RowFile rows;
-  rows.memory_ = Mapping(fd, 0, PROT_READ);
+  rows.file_ = Descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat info{};
-  if (fstat(fd, &info) == 0) rows.device_ = info.st_dev, rows.inode_ = info.st_ino;
-  close(fd);
-  if (rows.memory_.data() == nullptr) return Error{"cannot map " + file};
+  if (!rows.file_ || fstat(rows.file_.get(), &info) != 0)
+    return Error{"cannot read " + file + ": " + std::strerror(errno)};
+  rows.size_ = static_cast<uint64_t>(info.st_size);
+  rows.device_ = info.st_dev, rows.inode_ = info.st_ino;
   if (auto read = rows.readStreams(); !read) return Error{file + ": " + read.error()};
   try {
     if (auto read = rows.readAbout(); !read) return Error{file + ": " + read.error()};
@@ -46,40 +41,51 @@ Result<RowFile> RowFile::open(const std::string& file) {
   return rows;
 }
 
+/// Returns false if not all of the bytes are there.
+bool RowFile::copy(uint64_t place, void* to, size_t bytes) const {
+  for (size_t got = 0; got < bytes;) {
+    const ssize_t more =
+        pread(file_.get(), static_cast<std::byte*>(to) + got, bytes - got, static_cast<off_t>(place + got));
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) return false;
+    got += static_cast<size_t>(more);
+  }
+  return true;
+}
+
 Result<void> RowFile::readStreams() {
-  auto* shared = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
-  if (shared == nullptr) return Error{"is not a black box of a daemon of this version"};
-  record::FileHeader header;  // checked and used as it is now: another process may change the memory meanwhile
-  std::memcpy(&header, shared, sizeof header);
-  if (std::strncmp(header.magic, record::kRecordingFormat, sizeof header.magic) != 0 || header.ring != 1 ||
+  record::FileHeader header;
+  if (!copy(record::kHeaderAt, &header, sizeof header) ||
+      std::strncmp(header.magic, record::kRecordingFormat, sizeof header.magic) != 0 || header.ring != 1 ||
       header.stream_count > record::kMaxStreams)
     return Error{"is not a black box of a daemon of this version"};
-  const auto* about = reinterpret_cast<const char*>(memory_.at(header.about_address, header.about_bytes));
-  if (about == nullptr) return Error{"ends inside its description: it is incomplete or damaged"};
-  about_.assign(about, header.about_bytes);
+  if (!has(header.about_address, header.about_bytes))
+    return Error{"ends inside its description: it is incomplete or damaged"};
+  about_.resize(header.about_bytes);
+  if (!copy(header.about_address, about_.data(), about_.size())) return Error{"was cut while it was read"};
   for (uint32_t i = 0; i < header.stream_count; ++i) {
     const record::StreamHeader& stream = header.streams[i];
     if (stream.row_bytes == 0 || stream.row_bytes % 8 != 0 || stream.row_bytes > record::kMaxRowBytes)
       return Error{"has rows of an impossible size: it is damaged"};
     Stream& known = streams_.emplace_back();
     known.name.assign(stream.name, strnlen(stream.name, sizeof stream.name));
-    known.written = &shared->streams[i].rows;
+    known.written_at = record::kHeaderAt + offsetof(record::FileHeader, streams) + i * sizeof(record::StreamHeader) +
+                       offsetof(record::StreamHeader, rows);
     known.row_words = stream.row_bytes / 8;
   }
   return readBlocks(header.blocks_address);
 }
 
 Result<void> RowFile::readBlocks(uint64_t place) {
-  while (const std::byte* at = memory_.at(place, sizeof(record::BlockHeader))) {
-    record::BlockHeader block;
-    std::memcpy(&block, at, sizeof block);
-    std::byte* rows = memory_.at(place + sizeof block, block.bytes);
-    if (block.magic != record::BlockHeader::kMagic || rows == nullptr || place % 8 != 0) break;
+  record::BlockHeader block;
+  while (has(place, sizeof block) && copy(place, &block, sizeof block)) {
+    const uint64_t rows = place + sizeof block;
+    if (block.magic != record::BlockHeader::kMagic || !has(rows, block.bytes) || place % 8 != 0) break;
     if (block.stream < streams_.size()) {
-      streams_[block.stream].rows = reinterpret_cast<uint64_t*>(rows);
+      streams_[block.stream].rows_at = rows;
       streams_[block.stream].capacity = block.bytes / 8 / streams_[block.stream].row_words;
     }
-    place += sizeof block + block.bytes;
+    place = rows + block.bytes;
   }
   const bool whole = std::all_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.capacity >= 2; });
   return whole ? Result<void>() : Result<void>(Error{"has no room for rows: it is damaged"});
@@ -108,30 +114,46 @@ Result<void> RowFile::readAbout() {
 }
 
 bool RowFile::ended() const {
-  auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
-  return std::atomic_ref<uint32_t>(header->closed).load(std::memory_order_acquire) != 0;
+  uint32_t closed = 0;
+  return copy(record::kHeaderAt + offsetof(record::FileHeader, closed), &closed, sizeof closed) && closed != 0;
 }
 
-uint64_t RowFile::written(const Stream& stream) {
-  return load(*stream.written, std::memory_order_acquire);
+std::optional<uint64_t> RowFile::written(const Stream& stream) const {
+  // The kernel may copy a number byte by byte while the servo stores it, so it counts only if it is read twice.
+  constexpr int kTries = 1000;
+  uint64_t count = 0, again = 0;
+  if (!copy(stream.written_at, &count, sizeof count)) return std::nullopt;
+  for (int i = 0; i < kTries; ++i) {
+    if (!copy(stream.written_at, &again, sizeof again)) return std::nullopt;
+    if (count == again) break;
+    count = again;
+  }
+  // rows that are copied later are at least as new, and rows that were copied before are no newer
+  std::atomic_thread_fence(std::memory_order_seq_cst);
+  return count;
 }
 
-long RowFile::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
+/// Copies rows that lie in the ring in one piece or in two. Returns false if the file was cut.
+bool RowFile::copyRows(const Stream& stream, uint64_t first, uint64_t count, void* rows) const {
+  const uint64_t row_bytes = stream.row_words * 8, at = first % stream.capacity;
+  const uint64_t before_the_end = std::min(count, stream.capacity - at);
+  return copy(stream.rows_at + at * row_bytes, rows, before_the_end * row_bytes) &&
+         copy(stream.rows_at, static_cast<std::byte*>(rows) + before_the_end * row_bytes,
+              (count - before_the_end) * row_bytes);
+}
+
+long RowFile::read(const Stream& stream, uint64_t& row, void* rows, size_t most) const {
   constexpr int kTries = 1000;  // the writer goes round its ring in seconds
   for (int i = 0; i < kTries; ++i) {
-    const uint64_t end = written(stream), kept = stream.capacity - 1;  // the slot after the newest row is being written
-    const uint64_t first = std::min(std::max(row, end > kept ? end - kept : 0), end);
-    const uint64_t count = std::min<uint64_t>(most, end - first);
-    auto* to = static_cast<std::byte*>(rows);
-    for (uint64_t n = 0; n < count; ++n) {
-      uint64_t* from = stream.rows + (first + n) % stream.capacity * stream.row_words;
-      for (size_t word = 0; word < stream.row_words; ++word, to += 8) {
-        const uint64_t value = load(from[word], std::memory_order_acquire);
-        std::memcpy(to, &value, 8);
-      }
-    }
+    const auto end = written(stream);
+    if (!end) return -1;
+    const uint64_t kept = stream.capacity - 1;  // the slot after the newest row is being written
+    const uint64_t first = std::min(std::max(row, *end > kept ? *end - kept : 0), *end);
+    const uint64_t count = std::min<uint64_t>(most, *end - first);
+    if (!copyRows(stream, first, count, rows)) return -1;
+    std::atomic_thread_fence(std::memory_order_seq_cst);
     // The rows were overwritten meanwhile: reads newer ones.
-    if (count > 0 && written(stream) - first >= stream.capacity) continue;
+    if (const auto now = written(stream); count > 0 && now && *now - first >= stream.capacity) continue;
     row = first + count;
     return static_cast<long>(count);
   }
@@ -165,13 +187,14 @@ long hapticd_columns(hapticd_client* client, int stream, const hapticd_column** 
 
 uint64_t hapticd_written(hapticd_client* client, int stream) {
   const auto* found = streamOf(client, stream);
-  return found != nullptr ? hapticd::client::RowFile::written(*found) : 0;
+  return found != nullptr ? client->rows.written(*found).value_or(0) : 0;
 }
 
 long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most) {
   auto* found = streamOf(client, stream);
   if (found == nullptr) return -1;
-  const long got = hapticd::client::RowFile::read(*found, *row, rows, most);
+  const long got = client->rows.read(*found, *row, rows, most);
+  if (got < 0) return -1;
   std::atomic_ref<uint64_t> handed(found->handed);
   if (*row > handed.load(std::memory_order_relaxed))
     handed.store(*row, std::memory_order_relaxed);

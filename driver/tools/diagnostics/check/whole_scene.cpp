@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shell_word.hpp"
 #include "diagnostics/check/any_scene.hpp"
 #include "diagnostics/device/device_trial.hpp"
 #include "diagnostics/device/device_warnings.hpp"
@@ -101,9 +102,9 @@ document::Problems badModules(const scene::Scene& scene, host::Catalog& catalog)
     if (!placed.empty()) continue;  // the device file itself is wrong; otherwise the scene is
     const document::Place place =
         device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
-    document::report(
-        problems, place, "device",
-        trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " + device.file.string());
+    document::report(problems, place, "device",
+                     trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " +
+                         shellWord(device.file.string()));
   }
   return problems;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/shell_word.hpp"
 #include "diagnostics/device/arm_table.hpp"
 #include "diagnostics/device/corrected_keys.hpp"
 #include "diagnostics/device/decimal_commas.hpp"
@@ -176,7 +177,7 @@ ModuleTrial tryModule(const scene::Device& device) {
     const std::string call = trail.call();
     return {"its module '" + device.module + "' " + said.error() + (call.empty() ? "" : ", in " + call + "()") +
                 "; correct it in " + device.library.filename().string() + "; hapticd device check " +
-                device.file.string() + " tries every call",
+                shellWord(device.file.string()) + " tries every call",
             {}};
   }
   if (said->front() == kNotMade) return {said->substr(1), {}};

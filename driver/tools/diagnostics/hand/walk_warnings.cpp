@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/shell_word.hpp"
 #include "diagnostics/hand/detent_warnings.hpp"
 #include "diagnostics/hand/hand_inside.hpp"
 #include "diagnostics/hand/hand_script.hpp"
@@ -340,7 +341,8 @@ void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems&
       fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
                   "measures it",
                   what, model.name, step * 1e3, walk.period * 1e3,
-                  step > walk.period ? ", and a run silences a plugin that needs more" : "", model.library.string()));
+                  step > walk.period ? ", and a run silences a plugin that needs more" : "",
+                  shellWord(model.library.string())));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/shell_word.hpp"
 #include "diagnostics/device/arm_controls.hpp"
 #include "host/catalog.hpp"
 
@@ -31,7 +32,7 @@ Finding silenced(const ArmControls& found, const std::string& file) {
           std::string("nothing is known that switches its motors off when the daemon is gone") +
               (found.opened ? "" : "; the arm is not plugged in, so it could not be asked"),
           "after SIGKILL, or when the machine dies, it may hold the last force",
-          "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
+          "keep a switch of its power within reach; all of its controls: hapticd device controls " + shellWord(file)};
 }
 
 /// Returns the fix that a module names in a message, or that of an arm that is not there.
@@ -81,16 +82,18 @@ std::optional<Finding> withoutRule(const ArmControls& found, const std::string& 
   const auto generator = host::ownFile("share/hapticd/generate-rules", "udev/generate-rules");
   return Finding{
       found.arm, Verdict::kWarn, "no installed udev rule names its id " + found.usb_id, "only root can open it",
-      (generator ? generator->string() : "in the folder of hapticd's sources: udev/generate-rules") + " " +
-          fs::absolute(file).string() + " | sudo tee /etc/udev/rules.d/70-" + fs::path(file).stem().string() +
-          ".rules && sudo udevadm control --reload && sudo udevadm trigger"};
+      (generator ? shellWord(generator->string()) : "in the folder of hapticd's sources: udev/generate-rules") + " " +
+          shellWord(fs::absolute(file).string()) + " | sudo tee " +
+          shellWord("/etc/udev/rules.d/70-" + fs::path(file).stem().string() + ".rules") +
+          " && sudo udevadm control --reload && sudo udevadm trigger"};
 }
 
 std::optional<Finding> repeats(const ArmControls& found, const std::string& file) {
   if (!found.repeats_pass) return std::nullopt;
-  return Finding{found.arm, Verdict::kWarn, "its reports have no counter and no time",
-                 "firmware that hangs and sends its last report for ever is not noticed",
-                 "let the firmware count its reports (is: counter); all controls: hapticd device controls " + file};
+  return Finding{
+      found.arm, Verdict::kWarn, "its reports have no counter and no time",
+      "firmware that hangs and sends its last report for ever is not noticed",
+      "let the firmware count its reports (is: counter); all controls: hapticd device controls " + shellWord(file)};
 }
 
 std::optional<Finding> pushesLess(const ArmControls& found) {
@@ -107,11 +110,11 @@ std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog) {
   if (!found)
     return {{file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
              "no run opens this arm",
-             "correct that; hapticd check " + file + " shows every problem of the file and its module"}};
+             "correct that; hapticd check " + shellWord(file) + " shows every problem of the file and its module"}};
   std::vector<Finding> findings;
   for (const std::string& doubt : found->doubts)
     findings.push_back({found->arm, Verdict::kWarn, doubt, "forces or simulated hands may go wrong",
-                        "correct its module; hapticd device check " + file + " examines all of it"});
+                        "correct its module; hapticd device check " + shellWord(file) + " examines all of it"});
   if (found->simulated) {
     findings.push_back({found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""});
     return findings;

@@ -14,6 +14,7 @@
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
+#include "base/shell_word.hpp"
 #include "diagnostics/machine/device_bus.hpp"
 #include "host/catalog.hpp"
 #include "watch/quarantine.hpp"
@@ -221,7 +222,7 @@ Finding checkModules(host::Catalog& catalog, host::Kind kind) {
                    : "hapticd device list shows the searched folders; set HAPTICD_PLUGIN_PATH"};
   if (bad.empty()) return ok(name, std::to_string(good) + " files load");
   return {name, Verdict::kWarn, bad, "scenes that name it cannot run",
-          shapes ? "hapticd plugin check " + first_bad : "hapticd device list"};
+          shapes ? "hapticd plugin check " + shellWord(first_bad) : "hapticd device list"};
 }
 
 Finding checkQuarantine() {

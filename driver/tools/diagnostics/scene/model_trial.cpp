@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/shell_word.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "diagnostics/scene/slow_setup.hpp"
 #include "diagnostics/scene/trial_end.hpp"
@@ -156,7 +157,7 @@ void reportEnd(const std::string& how, const host::ChildProgress& trail, const s
                    "plugin '" + model.plugin + "' of model '" + model.name + "' " + how + whereAtEnd(trail.call()) +
                        (more ? "; the models after it were not tried" : "") +
                        (hangs ? "; if it only needs longer, give --setup-limit more seconds" : "") +
-                       "; hapticd plugin check " + model.library.string() + " looks for the cause");
+                       "; hapticd plugin check " + shellWord(model.library.string()) + " looks for the cause");
 }
 
 /// Warns of a plugin that crashes when the process ends. It was set up and removed without a problem.

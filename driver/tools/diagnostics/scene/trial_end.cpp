@@ -16,6 +16,7 @@
 #include "base/call_name.hpp"
 #include "base/code_owner.hpp"
 #include "base/os.hpp"
+#include "base/shell_word.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "host/catalog.hpp"
 #include "watch/culprit.hpp"
@@ -84,7 +85,7 @@ void reportUnknownEnd(const scene::Scene& scene, const std::string& how, documen
   for (const size_t index : foreign) {
     const scene::Model& model = scene.models[index];
     likely += fmt::format("{}plugin '{}' of model {} (hapticd plugin check {})", likely.empty() ? "" : " or ",
-                          model.plugin, model.name, model.library.string());
+                          model.plugin, model.name, shellWord(model.library.string()));
     if (foreign.size() > 1) continue;
     key = fmt::format("models[{}].plugin", index);
     place = placeInModel(model, key);
@@ -157,7 +158,7 @@ void reportWalkEnd(const scene::Scene& scene, const std::string& how, const host
   reportInModel(warnings, scene, index, "plugin",
                 fmt::format("model {}: when the hand was moved, its plugin {}{}; a run would end there; find the cause "
                             "with: hapticd plugin check {}",
-                            model.name, how, whereAtEnd(trail.call()), model.library.string()));
+                            model.name, how, whereAtEnd(trail.call()), shellWord(model.library.string())));
 }
 
 }  // namespace hapticd::diagnostics

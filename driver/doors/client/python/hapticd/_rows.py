@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The black box of a running daemon: the newest rows of every stream, mapped read-only."""
+"""The black box of a running daemon: the newest rows of every stream. It is read and not mapped, because the kernel kills a
+program whose mapped file is cut."""
 from __future__ import annotations
 
 import json
-import mmap
 import operator
 import os
 import struct
+import weakref
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -23,6 +24,7 @@ _CLOSED_AT = _HEADER_AT + 32  # the member `closed` of the header
 _CLOSED = struct.Struct("<I")
 _STREAM = struct.Struct("<16sIIQQ")
 _BLOCK = struct.Struct("<IIQ")
+_COUNT = struct.Struct("<Q")
 _BLOCK_MAGIC = 0x4B4C4248
 _INDEX_NODE = 0xFFFFFFFF
 _CODES = {"f8": "d", "f4": "f", "u8": "Q", "u4": "I", "i4": "i"}
@@ -82,14 +84,43 @@ class Rows(list):
         return [row[key] for row in self] if isinstance(key, str) else list.__getitem__(self, key)
 
 
+class _File:
+    """The bytes of a file that others may change and cut."""
+
+    def __init__(self, file: str) -> None:
+        self._fd = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+        weakref.finalize(self, os.close, self._fd)
+        self.size = os.fstat(self._fd).st_size
+        self.closed = False  # nothing more may be read but whether the daemon has ended
+
+    def read(self, at: int, size: int) -> bytes:
+        if self.closed:
+            raise HapticdError(CLOSED, "closed")
+        data = b""
+        while len(data) < size:
+            more = os.pread(self._fd, size - len(data), at + len(data))
+            if not more:
+                raise HapticdError("the black box of the daemon was cut by another program\n  fix: start the daemon again, then connect again",
+                                   "damaged")
+            data += more
+        return data
+
+    def unpacked(self, form: struct.Struct, at: int) -> tuple[Any, ...]:
+        return form.unpack(self.read(at, form.size))
+
+    def ended(self) -> bool:
+        data = os.pread(self._fd, _CLOSED.size, _CLOSED_AT)
+        return len(data) == _CLOSED.size and _CLOSED.unpack(data)[0] != 0
+
+
 class Stream:
     """The rows of one stream. Rows are numbered from 0; the newest `capacity` are kept."""
 
-    def __init__(self, memory: mmap.mmap, number: int, name: str, row_bytes: int, capacity: int, rows_at: int,
+    def __init__(self, file: _File, number: int, name: str, row_bytes: int, capacity: int, rows_at: int,
                  columns: list[Column]) -> None:
         self.number, self.name, self.row_bytes, self.capacity = number, name, row_bytes, capacity
         self.columns = columns
-        self._memory, self._rows_at = memory, rows_at
+        self._file, self._rows_at = file, rows_at
         self._count_at = _HEADER_AT + _HEADER.size + number * _STREAM.size + 24
         self._row = type("Row", (Row,), {"places": Named("column", {c.name: i for i, c in enumerate(columns)})})
         self.dtype = None
@@ -100,9 +131,12 @@ class Stream:
     @property
     def written(self) -> int:
         """The number of rows written so far, which is also the number of the next row."""
-        if self._memory.closed:
-            raise HapticdError(CLOSED, "closed")
-        return struct.unpack_from("<Q", self._memory, self._count_at)[0]
+        count = again = -1
+        for _ in range(_TRIES):  # the kernel may copy a number byte by byte while the servo stores it
+            count, again = again, self._file.unpacked(_COUNT, self._count_at)[0]
+            if count == again:
+                break
+        return again
 
     def _kept(self, first: int, written: int) -> int:
         # the slot after the newest row may already be half overwritten
@@ -133,9 +167,9 @@ class Stream:
         at = first % self.capacity
         before_the_end = min(count, self.capacity - at)
         begin = self._rows_at + at * self.row_bytes
-        data = bytearray(self._memory[begin:begin + before_the_end * self.row_bytes])
+        data = bytearray(self._file.read(begin, before_the_end * self.row_bytes))
         if before_the_end < count:
-            data += self._memory[self._rows_at:self._rows_at + (count - before_the_end) * self.row_bytes]
+            data += self._file.read(self._rows_at, (count - before_the_end) * self.row_bytes)
         return data
 
     def _parsed(self, data: bytearray, count: int) -> Any:
@@ -150,51 +184,44 @@ class BlackBox:
 
     def __init__(self, file: str) -> None:
         try:
-            fd = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+            self._file = _File(file)
         except OSError as error:
             raise HapticdError(f"cannot read {file}: {error.strerror}\n  fix: start a daemon with hapticd run; its group may read it", "damaged") from None
         try:
-            self._memory = mmap.mmap(fd, 0, prot=mmap.PROT_READ)
-            self._head = mmap.mmap(fd, min(len(self._memory), mmap.PAGESIZE), prot=mmap.PROT_READ)  # stays mapped after close()
-        except (OSError, ValueError) as error:
-            raise HapticdError(f"{file}: the black box cannot be mapped into memory: {error}", "damaged") from None
-        finally:
-            os.close(fd)
-        try:
             self._read()
-        except (struct.error, ValueError, KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
+        except (OSError, struct.error, ValueError, KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
             raise HapticdError(f"{file}: the black box cannot be understood ({error!r}); its daemon may be of another version, or still starting",
                                "damaged") from None
         except HapticdError as error:
             raise HapticdError(f"{file}: {error}", "damaged") from None
 
     def _read(self) -> None:
-        magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
+        magic, count, ring, _, _, about_at, about_bytes, blocks_at = self._file.unpacked(_HEADER, _HEADER_AT)
         if not magic.startswith(b"hapticd-recording/1") or not ring:
             raise HapticdError("is not a black box that this version of the package can read", "damaged")
-        self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
+        self.about: dict[str, Any] = json.loads(self._file.read(about_at, min(about_bytes, self._file.size)))
         places = self._rows_of(blocks_at, count)
         self.streams: dict[str, Stream] = Named("stream")
         for number in range(count):
-            name, row_bytes, capacity, _, _ = _STREAM.unpack_from(
-                self._memory, _HEADER_AT + _HEADER.size + number * _STREAM.size)
+            name, row_bytes, capacity, _, _ = self._file.unpacked(
+                _STREAM, _HEADER_AT + _HEADER.size + number * _STREAM.size)
             text = name.rstrip(b"\0").decode()
             columns = [known(Column, column) for column in self.about["columns"][text]]
             at, size = places[number]
             if capacity < 2 or row_bytes < 1 or size < capacity * row_bytes:
                 raise HapticdError("the black box is damaged: it has no room for its rows", "damaged")
-            self.streams[text] = Stream(self._memory, number, text, row_bytes, capacity, at,
+            self.streams[text] = Stream(self._file, number, text, row_bytes, capacity, at,
                                         [column for column in columns if column.fits(row_bytes)])
 
     def _rows_of(self, at: int, count: int) -> dict[int, tuple[int, int]]:
         places: dict[int, tuple[int, int]] = {}
-        while len(places) < count and at + _BLOCK.size <= len(self._memory):
-            magic, stream, size = _BLOCK.unpack_from(self._memory, at)
+        while len(places) < count and at + _BLOCK.size <= self._file.size:
+            magic, stream, size = self._file.unpacked(_BLOCK, at)
             if magic != _BLOCK_MAGIC:
                 break
             at += _BLOCK.size
             if stream != _INDEX_NODE:
-                places[stream] = at, min(size, len(self._memory) - at)
+                places[stream] = at, min(size, self._file.size - at)
             at += size
         if len(places) < count:
             raise HapticdError("the black box is damaged: it lacks the rows of a stream", "damaged")
@@ -202,7 +229,7 @@ class BlackBox:
 
     def ended(self) -> bool:
         """Returns whether the daemon has noted here that it ended in order."""
-        return bool(_CLOSED.unpack_from(self._head, _CLOSED_AT)[0])
+        return self._file.ended()
 
     def close(self) -> None:
-        self._memory.close()
+        self._file.closed = True

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /** The page of hapticd-view. It passes the messages of the connection on to the scene, the plots and the panels. */
-import {Vector3} from 'three';
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Drawings} from './drawings.js';
@@ -39,7 +38,7 @@ class Page {
     this.view = null;
     this.now = null;
     this.hello = null;
-    this.status = {};
+    [this.status, this.held] = [{}, false];
     this.pendingList = null;
     this.paints = {first: performance.now(), scene: 0};
     this.#listen();
@@ -102,7 +101,7 @@ class Page {
     const resting = again && this.ledWhenLost;
     this.ledWhenLost = false;
     $('hint').hidden = !resting && (!control || script?.number !== kGuided);
-    $('hint').textContent = resting ? 'The connection was lost, and the hand rests: drag the tip again' : 'Drag the tip onto a model to press it; the wheel moves it deeper';
+    $('hint').textContent = resting ? 'The connection was lost, and the hand rests: drag the tip again' : `Drag the tip onto a model to press it${matchMedia('(pointer: coarse)').matches ? '' : '; the wheel moves it deeper'}`;
     if (again) this.notice('The connection is back', true);
   }
 
@@ -171,7 +170,7 @@ class Page {
   async #drawModels() {
     if (!await this.drawings.draw()) return;
     this.view.measure();
-    $('read-size').value = sizeText(this.view.models.box().getSize(new Vector3()).toArray());
+    $('read-size').value = sizeText(this.view.models.box());
     this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
@@ -244,7 +243,7 @@ class Page {
       if (!this.hand.used) view.fit();
     }
     this.events.look(now);
-    this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeld));
+    this.#showFaults(now.arms.map((arm) => arm.now?.fault ?? 0));
     const first = now.arms[0]?.now;
     now.arms.forEach((arm, i) => { this.readForces[i].value = short(arm.now ? norm(arm.now.sent) : NaN); });
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
@@ -286,10 +285,13 @@ class Page {
     return faults.length > 0 ? this.#lamp(this.held ? 'held' : 'bad', faults.join(', ')) : this.#lamp('good', text);
   }
 
-  #showHold(held) {
-    if (held === this.held) return;
-    this.held = held;
-    $('hold').firstElementChild.textContent = held ? 'Clear' : 'Hold';
+  /** Offers what there is to clear: a hold by the button that makes it, a fault by one of its own. */
+  #showFaults(faults) {
+    $('clear').hidden = !faults.some((fault) => fault !== 0 && fault !== kHeld);
+    if (faults.includes(kHeld) === this.held) return;
+    this.held = !this.held;
+    $('hold').firstElementChild.textContent = this.held ? 'Clear hold' : 'Hold';
+    $('hold').title = this.held ? 'Clear the hold: the force ramps in again (space)' : 'Ramp the force to zero until the hold is cleared (space)';
   }
 
   #lamp(state, text) {

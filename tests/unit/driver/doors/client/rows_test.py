@@ -7,15 +7,18 @@ import mmap
 import os
 import struct
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(sys.argv[1], "driver", "doors", "client", "python"))
 sys.path.insert(0, os.path.join(sys.argv[1], "tests", "support"))
 from e2e import check, finish
-from hapticd._rows import _HEADER, _HEADER_AT, _STREAM, Column, Stream
+from hapticd._rows import _HEADER, _HEADER_AT, _STREAM, Column, Stream, _File
 
 CAPACITY, AT = 7, 4096
-memory = mmap.mmap(-1, 8192)
-stream = Stream(memory, 0, "ticks", 16, CAPACITY, AT, [Column("tick", "u8", 0, "", ""), Column("twice", "f8", 8, "", "")])
+box = tempfile.NamedTemporaryFile()
+box.truncate(8192)
+memory = mmap.mmap(box.fileno(), 8192)  # as the daemon writes it
+stream = Stream(_File(box.name), 0, "ticks", 16, CAPACITY, AT, [Column("tick", "u8", 0, "", ""), Column("twice", "f8", 8, "", "")])
 
 
 def write(rows):
