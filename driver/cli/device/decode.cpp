@@ -163,8 +163,8 @@ document::Problems beyondFields(const DecodeArguments& options, const Described&
   return problems;
 }
 
-/// Appends a report to a transfer. Each packet of a transfer from the arm begins with bytes of the USB chip, which are 0
-/// here.
+/// Appends a report to a transfer. Each packet of a transfer from the arm begins with bytes of the USB chip, which are
+/// 0 here.
 void appendReport(const codec::Framing& framing, bool from_arm, const std::vector<uint8_t>& report,
                   std::vector<uint8_t>& transfer) {
   for (const uint8_t byte : report) {

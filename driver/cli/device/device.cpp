@@ -189,8 +189,8 @@ void printDoubts(const scene::Device& description, const host::DeviceInstance& d
   if (kinematics.gravity(device.handle(), q.data(), kAnyway, torque.data()) < 0) return;
   if (std::all_of(torque.begin(), torque.end(), [](double t) { return t == 0; }))
     std::printf("  %s: gravity is not compensated\n", hasParameter(device.description(), "arm.masses")
-                                                           ? "no masses in its description"
-                                                           : "its module carries no weight (a vendor's library may)");
+                                                          ? "no masses in its description"
+                                                          : "its module carries no weight (a vendor's library may)");
 }
 
 /// Prints a message, unless it is an error: errors are also returned as results, and the caller prints them.

@@ -204,6 +204,18 @@ Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
   return done;
 }
 
+/// Loads a scene for a run that goes on, with all that the command line and the daemon file change in every scene.
+Result<scene::Scene> loadDuringRun(const RunArguments& options, const std::string& file) {
+  catalog().refresh();
+  scene::Loaded loaded = scene::load(file, catalog(), {true, options.device});
+  std::string problems;
+  for (const document::Problem& problem : loaded.problems) problems += (problems.empty() ? "" : "\n") + problem.text();
+  if (!loaded.scene) return Error{problems};
+  applyDaemonFile(*loaded.scene);
+  if (options.view) guideSimulatedHands(*loaded.scene);
+  return std::move(*loaded.scene);
+}
+
 int runScene(const RunArguments& options, scene::Scene& scene) {
   servo::RunOptions how = runOptions(options, scene);
   // a run in virtual time is soon over, so it has a status page and a black box only if it was given a name
@@ -230,7 +242,8 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   const auto advise = [&runner](const scene::Scene& models, const std::vector<double>& stiffness) {
     return diagnostics::warningsOfAddedModels(**runner, models, stiffness, catalog());
   };
-  if (files) files->serve(**runner, options.device, catalog(), advise, logOfRun);
+  const auto load = [&options](const std::string& file) { return loadDuringRun(options, file); };
+  if (files) files->serve(**runner, load, catalog(), advise, logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());
   return conclude({options.scene, options.report, options.picture, options.record, how.rate, options.virtual_time,
                    program_start, left_out},

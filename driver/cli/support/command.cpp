@@ -46,14 +46,6 @@ std::filesystem::path daemonFile() {
   return host::shippedFile("hapticd.yaml").value_or("");
 }
 
-/// Applies the settings of this machine's daemon file to a scene. They hold for every scene.
-void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
-  if (daemon.rate) scene.servo.rate = *daemon.rate;
-  for (scene::Device& device : scene.devices)
-    if (daemon.force && (device.limits.force == 0 || device.limits.force > *daemon.force))
-      device.limits.force = *daemon.force;
-}
-
 }  // namespace
 
 std::string wrongPicture(const std::string& file) {
@@ -125,6 +117,14 @@ const scene::Daemon& daemonSettings() {
   return daemon;
 }
 
+void applyDaemonFile(scene::Scene& scene) {
+  const scene::Daemon& daemon = daemonSettings();
+  if (daemon.rate) scene.servo.rate = *daemon.rate;
+  for (scene::Device& device : scene.devices)
+    if (daemon.force && (device.limits.force == 0 || device.limits.force > *daemon.force))
+      device.limits.force = *daemon.force;
+}
+
 std::string guide(const std::string& page) {
   const std::string source = "driver/docs/" + page;
   const auto file = host::ownFile("share/doc/hapticd/docs/" + page, source);
@@ -154,7 +154,7 @@ std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std
                                               bool default_device) {
   scene::Loaded loaded = scene::load(file, catalog(), {default_device, device_file});
   printProblems(loaded.problems, stderr);
-  if (loaded.scene) applyDaemon(daemonSettings(), *loaded.scene);
+  if (loaded.scene) applyDaemonFile(*loaded.scene);
   return std::move(loaded.scene);
 }
 

@@ -63,6 +63,9 @@ class BadDaemonFile : public std::runtime_error {
 /// Returns the daemon file of this machine. It throws BadDaemonFile if the file has problems.
 const scene::Daemon& daemonSettings();
 
+/// Applies the settings of the daemon file of this machine to a scene. They hold for every scene.
+void applyDaemonFile(scene::Scene& scene);
+
 /// Returns the plugins and modules in the search path, which comes from the options, the daemon file and the
 /// environment.
 host::Catalog& catalog();

@@ -208,7 +208,10 @@ def scene_without_an_arm(environment, folder):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
-    run = subprocess.Popen([HAPTICD, "run", write(scratch, "empty", []), "--name", "changed"], env=environment,
+    machine = os.path.join(scratch, "machine.yaml")  # what it limits is no difference of a scene that is loaded again
+    with open(machine, "w") as out:
+        out.write("hapticd-daemon: 1\nlimits: {force: 8}\n")
+    run = subprocess.Popen([HAPTICD, "--config", machine, "run", write(scratch, "empty", []), "--name", "changed"], env=environment,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     atexit.register(run.kill)
     until(lambda: os.path.exists(os.path.join(scratch, "changed.sock")), 30)

@@ -170,21 +170,13 @@ RunFiles::~RunFiles() {
   close(lock_);
 }
 
-void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catalog& catalog,
+void RunFiles::serve(Runner& runner, const RequestHandler::LoadScene& load, host::Catalog& catalog,
                      RequestHandler::Advise advise, const host::Services::Log& log) {
   if (folder_.empty()) return;
   runner_ = &runner;
   // Plugins are described in another program: after a fork, every first write to a page of the servo's memory would be
   // a page fault in a tick.
   catalog.describeBy([](const auto& file) { return host::describeByProgram("/proc/self/exe", file); });
-  const auto load = [device_file, &catalog](const std::string& file) -> Result<scene::Scene> {
-    catalog.refresh();
-    scene::Loaded loaded = scene::load(file, catalog, {true, device_file});
-    if (loaded.scene) return std::move(*loaded.scene);
-    std::string text;
-    for (const document::Problem& problem : loaded.problems) text += (text.empty() ? "" : "\n") + problem.text();
-    return Error{text};
-  };
   handler_ = std::make_unique<RequestHandler>(runner, load, log, stateFolder(folder_));
   handler_->adviseBy(std::move(advise));
   const std::string socket = folder_ + "/" + name_ + ".sock";

@@ -24,11 +24,11 @@ class RunFiles {
   RunFiles& operator=(const RunFiles&) = delete;
 
   /// [main] Opens the socket and serves it. If that fails, it logs a warning, and the run continues.
-  /// @param device_file replaces the devices of scenes that are loaded during the run
+  /// @param load loads the scenes that programs name during the run
   /// @param catalog finds the plugins of these scenes
   /// @param advise gives warnings about models that are added
-  void serve(Runner& runner, const std::string& device_file, host::Catalog& catalog, RequestHandler::Advise advise,
-             const host::Services::Log& log);
+  void serve(Runner& runner, const RequestHandler::LoadScene& load, host::Catalog& catalog,
+             RequestHandler::Advise advise, const host::Services::Log& log);
 
   /// [main] Called a few times per second: dumps the black box once after each new fault.
   void look();

@@ -61,7 +61,7 @@ std::string lowerCase(std::string text) {
 /// Returns true if a line of an installed udev rule has both numbers. Rule files that sort after 73 do not count,
 /// because they come too late to give access to the person at the seat.
 bool hasRule(const std::string& vendor, const std::string& product) {
-  for (const char* dir : {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+  for (const char* dir : kUdevFolders) {
     std::error_code code;
     for (const auto& file : fs::directory_iterator(dir, code)) {
       if (file.path().extension() != ".rules" || file.path().filename().string() >= "73") continue;

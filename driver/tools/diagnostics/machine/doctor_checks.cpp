@@ -142,7 +142,7 @@ Finding checkLimits() {
 /// Checks the udev rules. They must sort before 73-seat-late, or a person at the seat gets no access.
 Finding checkUdev() {
   std::string found;
-  for (const char* dir : {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+  for (const char* dir : kUdevFolders) {
     std::error_code code;
     for (const auto& file : std::filesystem::directory_iterator(dir, code)) {
       const std::string name = file.path().filename().string();

@@ -19,6 +19,10 @@ struct Finding {
   std::string fix;          ///< a command or an action; empty if all is well
 };
 
+/// Folders in which udev looks for rules. `cmake --install` puts ours below /usr/local.
+inline constexpr const char* kUdevFolders[] = {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/local/lib/udev/rules.d",
+                                               "/usr/lib/udev/rules.d", "/lib/udev/rules.d"};
+
 /// [main] Makes every check except the latency run. All are quick and have no side effects.
 std::vector<Finding> checkSystem(host::Catalog& catalog);
 
