@@ -30,6 +30,20 @@ void waitForUser(const char* instructions, bool yes) {
   }
 }
 
+/// Warns of joints beyond their stops, where no joint can be: forces would have wrong directions there.
+void warnOfStops(host::DeviceInstance& device, const hdv_sample& sample) {
+  constexpr double kSlack = 0.05;  // [rad, m]
+  const hdv_info& info = device.info();
+  for (uint32_t i = 0; i < info.joint_count; ++i) {
+    const double at = sample.position[i], least = info.position_min[i], most = info.position_max[i];
+    if (least == most || (at >= least - kSlack && at <= most + kSlack)) continue;  // equal: its module names none
+    std::fprintf(stderr,
+                 "warning: joint %u is at %.4f, beyond its stops at %.4f and %.4f\n"
+                 "  fix: correct the pose of the calibration, the scale of its position, or arm.limits\n",
+                 i + 1, at, least, most);
+  }
+}
+
 void printWhere(host::DeviceInstance& device) {
   hdv_sample sample{};
   std::array<double, 3> tip{};
@@ -40,6 +54,7 @@ void printWhere(host::DeviceInstance& device) {
   if (device.kinematics().forward(device.handle(), sample.position, tip.data(), orientation.data()) >= 0)
     std::printf(", tip at (%.4f, %.4f, %.4f) m in the device frame", tip[0], tip[1], tip[2]);
   std::printf("\n");
+  warnOfStops(device, sample);
 }
 
 int calibrateDevice(const CalibrationArguments& options) {

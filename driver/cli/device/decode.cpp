@@ -19,6 +19,7 @@
 #include "cli/device/file.hpp"
 #include "cli/device/joint_angles.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/output_file.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
@@ -75,10 +76,18 @@ int writeOut(const std::string& file, const std::string& text) {
   return written && closed ? kWorked : fail(kFailed, file + ": cannot be written");
 }
 
+/// Returns the files that a command reads, over which it must not write.
+Inputs inputsOf(const DecodeArguments& options) {
+  return {{options.input, "the input"}, {options.file, "the device file"}};
+}
+
 int decode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
+  const OutputKind kind = tableKind("report,time,verdict");
+  if (const std::string wrong = whyNotWritten(options.out, kind, inputsOf(options)); !wrong.empty())
+    return fail(kBadInput, wrong);
   const auto bytes = contentOf(options.input);
   if (!bytes)
     return fail(kBadInput, options.input + ": " + bytes.error() +
@@ -222,6 +231,9 @@ int encode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
+  const OutputKind bytes{"a file", {""}};  // bytes may be anything
+  if (const std::string wrong = whyNotWritten(options.out, bytes, inputsOf(options)); !wrong.empty())
+    return fail(kBadInput, wrong);
   const auto text = tableOf(options);
   if (!text) return kBadInput;
   const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);

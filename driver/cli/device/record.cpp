@@ -9,11 +9,14 @@
 #include "capture/capture.hpp"
 #include "cli/device/file.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/output_file.hpp"
 #include "hapticd/device_capture.h"
 #include "host/device_instance.hpp"
 
 namespace hapticd::cli {
 namespace {
+
+constexpr const char* kCaptureHeader = "\"@seconds bytes\" from the arm, \"> @seconds bytes\" to it";
 
 struct CaptureArguments {
   std::string file, out = "-";
@@ -43,6 +46,9 @@ int32_t take(void* who, uint64_t time_ns, uint32_t to_arm, const uint8_t* bytes,
 int record(const CaptureArguments& options) {
   const auto loaded = loadDeviceOrReport(options.file);
   if (!loaded) return kBadInput;
+  const OutputKind kind{"a recording of this command", {"# "}, kCaptureHeader};
+  if (const std::string wrong = whyNotWritten(options.out, kind, {{options.file, "the device file"}}); !wrong.empty())
+    return fail(kBadInput, wrong);
   std::optional<SetupErrors> once(std::in_place);
   auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return fail(kFailed, device.error());
@@ -58,8 +64,7 @@ int record(const CaptureArguments& options) {
   if (log.out == nullptr) return fail(kBadInput, options.out + ": cannot be written");
   log.until = options.seconds;
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = true; });
-  std::fprintf(log.out, "# %s, %s: \"@seconds bytes\" from the arm, \"> @seconds bytes\" to it\n", loaded->name.c_str(),
-               options.file.c_str());
+  std::fprintf(log.out, "# %s, %s: %s\n", loaded->name.c_str(), options.file.c_str(), kCaptureHeader);
   const hsp_status status = extension->capture((*device)->handle(), &take, &log);
   const bool closed = (log.out == stdout ? std::fflush(log.out) : std::fclose(log.out)) == 0;
   std::fprintf(stderr, "%zu transfers from the arm, %zu to it\n", log.from_arm, log.to_arm);

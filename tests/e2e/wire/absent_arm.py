@@ -38,6 +38,20 @@ with tempfile.TemporaryDirectory() as folder:
     code, told = run("device", "controls", arm)
     check("as controls say", re.search(r"on +a repeated report is noticed.*by the arm's clock", told), told)
 
+    for words, target, content in (("its own device file", arm, open(arm).read()), ("a scene", os.path.join(folder, "scene.yaml"), "hapticd: 1\nmodels: []\n")):
+        with open(target, "w") as file:
+            file.write(content)
+        code, told = run("device", "record", arm, "-o", target)
+        check(f"record writes over {words} in no case", code == 2 and target in told and open(target).read() == content, told)
+        given = os.path.join(folder, "given")
+        with open(given, "w") as file:
+            file.write("00\n")
+        code, told = run("device", "decode", arm, given, "-o", target)
+        check(f"nor does decode over {words}", code == 2 and target in told and open(target).read() == content, told)
+    content = open(arm).read()
+    code, told = run("device", "encode", arm, given, "-o", arm)
+    check("nor encode over its device file", code == 2 and "the device file" in told and open(arm).read() == content, told)
+
     code, told = run("device", "info", arm)
     check("info says that no switch must be held", "enable     none" in told, told)
     put(re.sub(r"(?m)^limits:.*$", "limits: {force: 2, enable: {button: 0}}", text))

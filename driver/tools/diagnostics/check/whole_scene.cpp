@@ -9,6 +9,7 @@
 #include "diagnostics/check/any_scene.hpp"
 #include "diagnostics/device/device_trial.hpp"
 #include "diagnostics/device/device_warnings.hpp"
+#include "diagnostics/device/like_arms.hpp"
 #include "diagnostics/device/slow_arm.hpp"
 #include "diagnostics/hand/fast_hands.hpp"
 #include "diagnostics/hand/hand_path_warnings.hpp"
@@ -76,6 +77,7 @@ document::Problems warningsOfSettings(const scene::Scene& full, const ModelTrial
   document::append(warnings, unguardedPrograms(full));
   document::append(warnings, quarantinedModels(full));
   document::append(warnings, slowArms(full));
+  document::append(warnings, likeArms(full));
   document::append(warnings, wideScales(full));
   warnOfSlips(full.file, warnings);
   return warnings;
