@@ -117,19 +117,23 @@ def soft_bodies():
     presses_again(join("still.yaml"), "mat_deformable", "dynamics: off: the body follows")
 
 
+def quoted(name):
+    return "'" + name.replace("'", "'\\''") + "'"
+
+
 def presses_again(model, plugin, explained=""):
     """A scene for a model that was imported before, as the import advises."""
     scene = os.path.splitext(model)[0] + " again.yaml"  # a name that a shell must get in quotes
     code, out, err = run("import", model, "--scene", scene)
-    check(f"{os.path.basename(model)}: a scene is made later", code == 0 and out.splitlines()[-1].strip() == f"hapticd run '{scene}' --view", out + err)
+    check(f"{os.path.basename(model)}: a scene is made later", code == 0 and out.splitlines()[-1].strip() == f"hapticd run {quoted(scene)} --view", out + err)
     check("for its plugin", f"plugin: {plugin}\n" in presses(scene) and explained in run("explain", scene).stdout)
 
 
 def scenes_of_models():
     code, out, err = run("import", join("cube.obj"), "-o", join("later's.hpart"))
-    quoted = "'" + join("later's.hpart").replace("'", "'\\''") + "'"
-    check("an import without a scene says how to see and feel the part", code == 0 and f"hapticd view {quoted}  " in out and
-          f"hapticd import {quoted} --scene SCENE.yaml" in out, out + err)
+    part = quoted(join("later's.hpart"))
+    check("an import without a scene says how to see and feel the part", code == 0 and f"hapticd view {part}  " in out and
+          f"hapticd import {part} --scene SCENE.yaml" in out, out + err)
     presses_again(join("later's.hpart"), "nurbs_rigid")
     code, out, err = run("import", join("later's.hpart"), "--scene", join("b.yaml"), "--fit", "0.1")
     check("a part that is made keeps its size", code == 2 and "import again" in err and not os.path.exists(join("b.yaml")), out + err)
