@@ -16,4 +16,7 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
 /// [main] Warns of a bound for programs (clients.max_force) above the arm's own limit, because it has no effect.
 document::Problems idleBounds(const scene::Scene& scene);
 
+/// [main] Warns of damping that makes a knock of one count of a simulated arm; `run` warns of it for real ones.
+document::Problems knocksOfDamping(const scene::Scene& scene);
+
 }  // namespace hapticd::diagnostics
