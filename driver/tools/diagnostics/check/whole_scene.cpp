@@ -125,6 +125,8 @@ void judgeScene(const scene::Scene& scene, const CheckOptions& options, host::Ca
   if (!options.files_only || !options.device.empty()) warnOfDevices(full, catalog, more);
   document::append(result.warnings, std::move(more));
   addImplausible(full, trial.boxes, catalog, {}, result.warnings);
+  for (const document::Problem& one : knocksOfDamping(full))  // last: a value in other units is told as such
+    if (!tells(result.warnings, one)) result.warnings.push_back(one);
 }
 
 }  // namespace hapticd::diagnostics

@@ -37,7 +37,6 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
       info = (*arm)->info();
     }
     document::append(warnings, tune::unstableSettings(scene, device, info, stiffness));
-    document::append(warnings, tune::noisyDamping(scene, device, info));
     document::append(warnings, stiffTogether(scene, device, info, stiffness));
     document::append(warnings, lightAdmittance(scene, device, info));
     if (givenIn(device.parameters, "wire") != nullptr && info.max_stiffness <= 0 &&
@@ -47,6 +46,16 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
           "parameters.device.max_stiffness",
           "the value is not given, so it is unknown whether " + device.name +
               " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
+  }
+  return warnings;
+}
+
+document::Problems knocksOfDamping(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const scene::Device& device : scene.devices) {
+    if (device.module != "simulated") continue;  // the resolution of others is known once they are open
+    auto arm = host::DeviceInstance::create(device, nullptr);
+    if (arm && (*arm)->open()) document::append(warnings, tune::noisyDamping(scene, device, (*arm)->info()));
   }
   return warnings;
 }

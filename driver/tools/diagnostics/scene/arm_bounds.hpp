@@ -19,5 +19,7 @@ document::Problems idleBounds(const scene::Scene& scene);
 /// [main] Warns of arms on which programs may push, but whose passivity controller is switched off: a program that goes
 /// along with the hand then gives it energy for ever.
 document::Problems unguardedPrograms(const scene::Scene& scene);
+/// [main] Warns of damping that makes a knock of one count of a simulated arm; `run` warns of it for real ones.
+document::Problems knocksOfDamping(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics
