@@ -27,6 +27,7 @@ class Mailbox final : public wire_arm::Transport {
   /// Waits at most until the next poll, so that a command never waits for the next state block.
   wire_arm::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
   wire_arm::Status send(std::span<const uint8_t> bytes) noexcept override;
+  bool sharesMemory() const noexcept override { return true; }
   /// Gives access to the command block through another descriptor of the same window.
   Descriptor openForSilence(hdv_silence& how) noexcept override;
   wire_arm::Status control(const codec::StartStep&) noexcept override { return wire_arm::Status::kFailed; }

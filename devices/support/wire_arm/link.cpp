@@ -231,10 +231,10 @@ void Link::serve(Nanoseconds now) noexcept {
   const bool news = wire_.exchange == codec::Exchange::kStream && commands_.front().sequence != sent_command_ &&
                     now - sent_at_ >= period_ / 2;
   const bool cut = cut_.load(std::memory_order_relaxed) && !cut_sent_;
-  if (now >= due_ || news || cut) send(now);
+  if (((now >= due_ || news) && readUntil(now) == 0) || cut) send(now);
   if (!open_) return;
   now = monotonicNow();
-  const Nanoseconds wait = due_ > now ? due_ - now : 0;
+  const Nanoseconds next = std::max(due_, readUntil(now)), wait = next > now ? next - now : 0;
   // hidapi knows only timeouts of whole milliseconds. The reports of a streaming arm end the wait in time. A polled arm
   // that has answered sends no report until it is asked again, so there is no wait for it.
   if (answered_ && wire_.exchange == codec::Exchange::kPoll)
@@ -268,7 +268,7 @@ void Link::receive(Nanoseconds wait) noexcept {
     if (session_.trouble() != Trouble::kNone) publish();
   }
   answered_ = answered_ || fresh;
-  if (fresh) reported_.store(true, std::memory_order_relaxed);
+  if (fresh) reported_at_ = monotonicNow(), reported_.store(true, std::memory_order_relaxed);
   if (fresh && zero_wanted_.load(std::memory_order_acquire)) takeZero();
   if (fresh) publishToServo();
   // This thread must sleep, because its priority is above the servo's: also if a device sends without end.
@@ -294,6 +294,15 @@ Nanoseconds Link::midway(Nanoseconds due) const noexcept {
   if (read == 0 || follows || wire_.exchange != codec::Exchange::kPoll) return due;
   const int64_t phase = ((at - read) % period + period) % period;
   return static_cast<Nanoseconds>(at - (phase - period / 2) / kShare);
+}
+
+/// A board that shares memory with this computer reads the command shortly before it writes its next report. If both
+/// have the same rate, it would find each command half written, until their clocks have drifted apart. So no command is
+/// written then, unless the report is late. Returns until when [ns], or 0 if a command may be written now.
+Nanoseconds Link::readUntil(Nanoseconds now) const noexcept {
+  if (!transport_->sharesMemory() || reported_at_ == 0) return 0;
+  const Nanoseconds expected = reported_at_ + period_, begin = expected - period_ / 3, end = expected + period_ / 4;
+  return now >= begin && now < end ? end : 0;
 }
 
 void Link::send(Nanoseconds now) noexcept {

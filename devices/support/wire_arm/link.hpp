@@ -90,6 +90,7 @@ class Link {
   void takeZero() noexcept;
   void send(Nanoseconds now) noexcept;
   Nanoseconds midway(Nanoseconds due) const noexcept;
+  Nanoseconds readUntil(Nanoseconds now) const noexcept;
   void lose(Trouble trouble) noexcept;
   void findDevice() noexcept;
   void logTrouble() noexcept;
@@ -127,7 +128,7 @@ class Link {
   std::string refusal_;           ///< why the last try to open the device again failed
   std::string back_ = "healthy";  ///< message for the time when the arm is healthy again
   Nanoseconds tried_at_ = 0;      ///< time of the last try to open the device again
-  Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
+  Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0, reported_at_ = 0;
   uint64_t sent_command_ = 0;
   std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};
 };

@@ -50,6 +50,8 @@ class Transport {
   virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
   /// Sends a control request without data (USB set-up packets of a start-up sequence).
   virtual Status control(const codec::StartStep& step) noexcept = 0;
+  /// True if the arm reads commands from memory into which send() writes. It may then read a command half written.
+  virtual bool sharesMemory() const noexcept { return false; }
   /// Opens the device a second time while it is open, for a process that switches the motors off if this process ends.
   /// Fills in everything except the bytes; `size` becomes the number of zeros to put before a report.
   /// @return a new descriptor, or an empty one if the device cannot be opened twice

@@ -19,6 +19,9 @@ namespace {
 /// A board that streams, at 1 kHz of the real clock unless a test says otherwise.
 struct FakeBoard {
   std::atomic<bool> plugged{true}, pushed{false}, stalled{false}, silent{false}, floods{false};
+  bool shares_memory = false;  ///< it reads its command just before it writes its report
+  std::atomic<int> torn{0};    ///< commands that came when it reads
+  std::atomic<Nanoseconds> reported_at{0};
   std::atomic<int> opened{0}, reports{0}, commands{0};
   std::string asked_for;  ///< serial number that it was opened by last
   int kept = 0;           ///< reports from before anybody read
@@ -44,9 +47,11 @@ class FakeTransport final : public Transport {
     RealClock clock(0);
     const Nanoseconds now = clock.now();
     if (board_.floods) board_.next = now;
+    if (board_.shares_memory) wait = std::min(wait, board_.period / 10);  // it is polled
     if (board_.silent || board_.next > now + wait) return clock.waitUntil(now + wait), Status::kNothing;
     if (!board_.floods) clock.waitUntil(board_.next);
     ++board_.reports;
+    board_.reported_at = monotonicNow();
     board_.next = std::max(board_.next, now - 5 * board_.period) + board_.period;
     ++board_.state.sequence;
     emulator::BoardState state = board_.state;
@@ -60,11 +65,13 @@ class FakeTransport final : public Transport {
     const emulator::BoardCommand command(bytes);
     board_.pushed = command.pushes();
     ++board_.commands;
+    if (monotonicNow() > board_.next - board_.period / 4) ++board_.torn;
     if (command.pushes())
       ++((command.current[0] > 0) == (board_.state.sequence % 2 == 0) ? board_.prompt : board_.late);
     return !board_.plugged ? Status::kGone : command.valid ? Status::kOk : Status::kFailed;
   }
   Status control(const codec::StartStep&) noexcept override { return Status::kOk; }
+  bool sharesMemory() const noexcept override { return board_.shares_memory; }
 
  private:
   FakeBoard& board_;
@@ -177,6 +184,22 @@ TEST_F(PacedLinkTest, EachReportEndsTheWaitAndItsAnswerGoesOutBeforeTheNext) {
   EXPECT_GT(fresh, kRounds / 2);
   EXPECT_GT(board.prompt, 2 * board.late) << board.late << " answers went out a report late";
   EXPECT_GT(board.prompt, kRounds / 2);
+}
+
+TEST_F(PacedLinkTest, ABoardThatSharesMemoryReadsNoHalfWrittenCommands) {
+  board.shares_memory = true;
+  auto link = startSlow();
+  RealClock clock(0);
+  constexpr int kRounds = 50;
+  for (int i = 0; i < kRounds; ++i) {
+    clock.waitUntil(board.reported_at + kPeriod - kPeriod / 8);  // just when it reads
+    wanted.time = monotonicNow(), ++wanted.sequence, wanted.on = true, wanted.torque = {0.5, 0, 0};
+    link->write(wanted);
+    const int reports = board.reports;
+    for (int k = 0; k < 100 && board.reports == reports; ++k) clock.waitUntil(clock.now() + kPeriod / 50);
+  }
+  EXPECT_GT(board.commands, kRounds / 2);
+  EXPECT_LT(board.torn, kRounds / 3);  // on a machine that stands still for some milliseconds, now and then
 }
 
 TEST_F(PacedLinkTest, ACutEndsThePushOfAServoThatIsStuckAndHoldsUntilItIsEnded) {
