@@ -78,12 +78,14 @@ void checkDamping(const scene::Scene& scene, size_t index, const scene::Device& 
   constexpr double kHand = 0.2;         // [kg] of a hand that holds the arm
   constexpr double kJudged = 50;        // [N s/m] check judges a stronger damper by itself, at any depth
   constexpr double kDepthScale = 1e-3;  // [m] if the scene gives none
+  constexpr double kDeepest = 0.1;      // [m] nobody presses deeper; a softer wall is told as such
   const scene::Model& model = scene.models[index];
   const scene::Value* damping = givenIn(model.parameters, "damping");
   const double k = numberIn(model.parameters, "stiffness");
   const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
   if (model.plugin != "nurbs_rigid" || damping == nullptr || !(k > 0) || !(info.mass_kg > 0) || device.admittance)
     return;
+  if (!(most <= k * kDeepest)) return;
   const double at_scale = k * numberIn(model.parameters, "depth_scale", kDepthScale);
   const double there = damping->number * most / at_scale;
   const double bound =
