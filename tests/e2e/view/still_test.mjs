@@ -9,7 +9,8 @@ import {root, scenes} from './program.mjs';
 const open = async (sandbox, show, file) => {
   const [url] = await sandbox.start(['view', file]).says(/http:\S+/, 120);
   const page = await show(url);
-  await page.waitForFunction(() => window.hapticdView?.view?.frames > 3 && document.getElementById('read-size').value !== '–');
+  await page.waitForFunction(() => window.hapticdView?.view?.frames > 0 && window.hapticdView.view.models.byIndex.size > 0 &&
+    document.getElementById('read-size').value !== '–');
   return page;
 };
 
