@@ -197,11 +197,14 @@ test('each of two hands is led by itself, by the mouse and by the keys', async (
     await page.screenshot({path: join(pictures, 'two-hands.png')});
     await page.mouse.up();
     assert.equal(await page.locator('.of-arm').count(), 2, 'a force for each');
+    const speeds = () => page.locator('.of-arm [title="Speed of the tip"]').evaluateAll((all) => all.map((one) => Number(one.value)));
+    assert.equal((await speeds()).length, 2, 'and a speed for each');
     await page.locator('#canvas').focus();
     await page.keyboard.press('n');
     const before = await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1]);
     for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowUp');
     await until(async () => (await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1])) > before + 0.006, kPatience, 'the first arm 10 mm up');
+    assert.ok((await speeds()).every(Number.isFinite), 'both speeds are numbers');
   });
 });
 

@@ -5,10 +5,11 @@ import {Connection} from './connection.js';
 import {Drawings} from './drawings.js';
 import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
-import {$, element, fileName, norm, save, short, sizeText, themeColor} from './format.js';
+import {$, fileName, save, short, sizeText, themeColor} from './format.js';
 import {greatestForce, Hand, handReach} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
+import {Readouts} from './readouts.js';
 import {Now} from './rows.js';
 import {View} from './scene.js';
 import {Sound} from './sound.js';
@@ -133,10 +134,7 @@ class Page {
     const ticks = this.now.table('ticks'), arms = names.map((name, i) => ({name, limit: limits[i]}));
     this.plots = ticks ? new Plots($('plots'), ticks, {arms, period: 1 / (about.rate_hz || 1000)}) : null;
     $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
-    this.readForces = names.map(() => element('output', {}, '–'));
-    for (const old of document.querySelectorAll('.of-arm')) old.remove();
-    $('readouts').prepend(...names.map((name, i) => element('div', {class: 'of-arm'},
-      element('dt', {title: name}, names.length > 1 ? name : 'Force'), element('dd', {}, this.readForces[i], element('small', {}, 'N')))));
+    this.readouts = new Readouts($('readouts'), names);
     this.events = new Events($('events'), about, (t, kind) => {
       if (kind !== 'contact') this.plots?.mark(t, kind);
       this.sound.play(kind);
@@ -244,10 +242,8 @@ class Page {
     }
     this.events.look(now);
     this.#showFaults(now.arms.map((arm) => arm.now?.fault ?? 0));
-    const first = now.arms[0]?.now;
-    now.arms.forEach((arm, i) => { this.readForces[i].value = short(arm.now ? norm(arm.now.sent) : NaN); });
+    this.readouts.update(now.arms.map((arm) => arm.now), now.tick.t);
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
-    $('read-speed').value = short(this.#speed(first) * 1e3);
     this.#showFoot(contacts);
     this.timeline.at(now.tick.t);
     if (this.hand.leads) $('hint').hidden = true;
@@ -260,17 +256,6 @@ class Page {
     const name = deepest ? this.features.name(this.drawings.of(deepest.model), deepest.feature) : '';
     $('foot').textContent = [name, endText(this.now.arms)].filter((text) => text !== '').join(' · ');
     $('foot').hidden = $('foot').textContent === '';
-  }
-
-  /** Returns the speed of the tip [m/s]. It is computed from positions, because the daemon estimates a velocity only if
-   * a model needs one. */
-  #speed(arm) {
-    const {t} = this.now.tick, before = this.before;
-    if (arm && (!before || t - before.t > 0.02 || t < before.t)) {
-      const moved = before && t > before.t ? norm(arm.position.map((p, i) => p - before.position[i])) / (t - before.t) : 0;
-      this.before = {t, position: arm.position, speed: moved};
-    }
-    return this.before?.speed ?? 0;
   }
 
   #status(status) {
