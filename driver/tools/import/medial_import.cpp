@@ -59,6 +59,12 @@ std::string toYaml(const MedialAxis& axis, const MedialImport& options, const st
   return text + fmt::format("  damping: {}\n  mass: {}\n", options.damping, options.mass);
 }
 
+/// The mass of a vertex that nobody gave [kg]. A body of many spheres would be heavier than metal with the usual one.
+double usualMass(std::size_t spheres) {
+  constexpr double kUsual = 0.01, kMostInAll = 2;  // [kg]
+  return std::min(kUsual, kMostInAll / static_cast<double>(spheres));
+}
+
 struct Deviation {
   double most = 0, mean = 0;
 };
@@ -107,8 +113,8 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
               axis.parts == 1 ? "" : "s", 100 * axis.covered);
   std::printf(
       "the surface is at most %.3f mm from the body (Hausdorff distance, one-sided; mean %.3f mm); the body at "
-      "most %.3f mm from points of the surface, which are %.3f mm apart\n",
-      1e3 * there->most, 1e3 * there->mean, 1e3 * back, 1e3 * samples.spacing);
+      "most %.3f mm from the tangent planes of its samples, and %.3f mm from the samples, which are %.3f mm apart\n",
+      1e3 * there->most, 1e3 * there->mean, 1e3 * beyond, 1e3 * back, 1e3 * samples.spacing);
   const double reached = std::fmax(there->most, beyond);
   if (reached > settings.tolerance)
     std::fprintf(stderr,
@@ -202,18 +208,20 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
   return surface;
 }
 
-Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog) {
+Result<void> importMedial(const MedialImport& asked, const Triangles& mesh, host::Catalog& catalog) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : mesh.points) box.extend(p);
-  printSize(box, options.file);
+  printSize(box, asked.file);
   MedialOptions settings;
-  settings.tolerance = options.tolerance > 0 ? options.tolerance : kToleranceShare * box.diagonal().norm();
-  settings.most_spheres = options.most_spheres;
-  settings.least_angle = options.least_angle;
-  const SurfaceSamples samples = sampleSurface(mesh, static_cast<std::size_t>(options.samples));
+  settings.tolerance = asked.tolerance > 0 ? asked.tolerance : kToleranceShare * box.diagonal().norm();
+  settings.most_spheres = asked.most_spheres;
+  settings.least_angle = asked.least_angle;
+  const SurfaceSamples samples = sampleSurface(mesh, static_cast<std::size_t>(asked.samples));
   ProgressLine progress;
   const auto axis = medialAxis(samples, settings, progress);
-  if (!axis) return Error{options.file + ": " + axis.error()};
+  if (!axis) return Error{asked.file + ": " + axis.error()};
+  MedialImport options = asked;
+  if (options.mass < 0) options.mass = usualMass(axis->spheres.size());
   const std::string source = fs::path(options.file).filename().string();
   const std::string text = endsWith(options.out, ".ma") ? toMa(*axis, source) : toYaml(*axis, options, source);
   if (auto written = writeWhole(options.out, text); !written) return written;

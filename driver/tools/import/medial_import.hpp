@@ -17,7 +17,8 @@ struct MedialImport {
   int samples = 20000;   ///< number of points on the surface
   int most_spheres = 2000;
   double least_angle = 60;  ///< [degrees] see MedialOptions
-  double stiffness = 300, damping = 0.5, mass = 0.01;
+  double stiffness = 300, damping = 0.5;
+  double mass = -1;  ///< [kg] of a vertex; negative: 0.01, and 2 kg in all at most
   /// [Pa], 1, [m] of a layer of tissue, instead of the stiffness; young 0: not given
   double young = 0, poisson = 0.45, thickness = 0;
 };

@@ -112,6 +112,8 @@ def soft_bodies():
     check("a model file has its own", "plugin: mat_deformable" in text and "\n      stiffness:" not in text, text)
     check("it is felt as it moves, and the import says so", "dynamics: felt: the force includes" in run("explain", join("egg-body-scene.yaml")).stdout
           and "felt: 300 N/m, and as it moves 0.5 N s/m and 20 g for each sphere" in told, told)
+    _, told = made(write(folder, "tile.obj", box(0.06, 0.006, 0.04)), "tile.yaml", "--medial", "--tolerance", "0.0002")  # of hundreds of spheres
+    check("a body of many spheres is not heavier than metal", 0 < float(re.search(r"([\d.]+) g for each sphere", told)[1]) < 10, told)
     code, out, err = run("import", mesh, "--medial", "-o", join("still.yaml"), "--samples", "3000", "--mass", "0", "--damping", "0")
     check("without mass and damping it is felt at rest, and the import says so", code == 0 and "as a body at rest" in out, out + err)
     presses_again(join("still.yaml"), "mat_deformable", "dynamics: off: the body follows")
