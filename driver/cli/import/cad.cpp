@@ -53,6 +53,7 @@ std::vector<std::string> wordsOf(const std::string& program, const CadImport& op
   if (options.check) words.emplace_back("--check");
   if (options.json) words.emplace_back("--json");
   if (!options.check) words.insert(words.end(), {"--out", options.out});
+  if (!options.named.empty()) words.insert(words.end(), {"--named", options.named});
   const importing::Placement& placement = options.placement;
   words.insert(words.end(), {"--scale", withDigits(placement.scale, 17), "--up", std::string(1, placement.up)});
   if (placement.fit > 0) words.insert(words.end(), {"--fit", withDigits(placement.fit, 17)});

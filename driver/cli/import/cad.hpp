@@ -10,6 +10,7 @@ namespace hapticd::cli {
 
 struct CadImport {
   std::string file, out;
+  std::string named;               ///< what messages call the result; "": `out`
   bool check = false;              ///< true: writes nothing, and only reports what would be lost
   bool json = false;               ///< true prints the report for programs
   importing::Placement placement;  ///< `scale` is a factor on top of the unit of the file

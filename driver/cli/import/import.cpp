@@ -11,12 +11,11 @@
 #include "cli/import/cad.hpp"
 #include "cli/import/file_content.hpp"
 #include "cli/import/mesh.hpp"
+#include "cli/import/patches.hpp"
 #include "cli/import/scene.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/model_file.hpp"
 #include "cli/support/output_file.hpp"
-#include "document/node.hpp"
-#include "import/bezier_import.hpp"
 #include "import/calibrate.hpp"
 #include "import/medial_import.hpp"
 #include "mesh_import/mesh_file.hpp"
@@ -101,40 +100,6 @@ int importSoftBody(const ImportArguments& options) {
   return done ? kWorked : fail(kFailed, done.error());
 }
 
-int writeModel(const BezierModel& model, const std::string& out) {
-  const std::string text = std::filesystem::path(out).extension() == ".json" ? toModelJson(model) : toModelYaml(model);
-  const Eigen::Vector3d size = boundsOf(model).sizes();
-  if (out == "-") {
-    std::fputs(text.c_str(), stdout);
-  } else {
-    if (const auto written = writeWhole(out, text); !written) return fail(kFailed, written.error());
-    std::printf("%s: %zu surface%s, %.4g x %.4g x %.4g m%s\n", out.c_str(), model.patches.size(),
-                model.patches.size() == 1 ? "" : "s", size.x(), size.y(), size.z(),
-                model.reversed ? ", outward reversed" : "");
-  }
-  warnOfSize(out, size.norm());
-  return kWorked;
-}
-
-int importPatches(const ImportArguments& options, const Placement& placement) {
-  document::Problems problems;
-  const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
-  printProblems(problems, stderr);
-  if (!text) return kBadInput;
-  auto model = parseBpt(*text, options.file);
-  if (!model && std::filesystem::path(options.file).extension() != ".bpt")
-    return fail(kBadInput, options.file +
-                               ": its name does not say what it holds, and it holds no Bezier patches; expected "
-                               "the ending .bpt, .stl, .obj, .ply, .step, .stp, .iges, .igs, .brep, .brp or .rle");
-  if (!model) return fail(kBadInput, model.error());
-  placeModel(*model, placement);
-  if (options.outward != "auto") model->reversed = options.outward == "reversed";
-  if (std::filesystem::path(options.out).extension() == ".hpart")
-    return fail(kBadInput,
-                options.out + ": Bezier patches become a model file, expected a name that ends in .yaml or .json");
-  return writeModel(*model, options.out);
-}
-
 int importModel(const ImportArguments& options) {
   const bool part = std::filesystem::path(options.file).extension() == ".hpart";
   if (part && options.medial)
@@ -171,8 +136,8 @@ int importModel(const ImportArguments& options) {
   Placement placement = options.placement;
   placement.up = options.up[0];
   if (isMeshFile(options.file))
-    return importMesh({options.file, options.out, placement, options.smooth_angle, options.json});
-  return importPatches(options, placement);
+    return importMesh({options.file, options.out, "", placement, options.smooth_angle, options.json});
+  return importPatches({options.file, options.out, "", placement, options.outward});
 }
 
 /// Writes a scene for a model that was made before.
@@ -205,6 +170,10 @@ int importAll(const ImportArguments& options) {
     if (code == kWorked && !options.json && !options.cad.check && options.out != "-") printNext(options.out);
     return code;
   }
+  if (options.out.empty())
+    return fail(kBadInput, options.file +
+                               ": --scene writes a scene that names a model, so --out is required: the name of "
+                               "the model to write, such as part.hpart");
   if (const std::string wrong = whyNoScene(options.scene, options.out); !wrong.empty()) return fail(kBadInput, wrong);
   if (const int code = importModel(options); code != kWorked) return code;
   Placement placement = options.placement;
@@ -231,7 +200,9 @@ void addMaterialOptions(const Command& command, const Option& medial, MedialImpo
   command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file; default: 0.5")
       .within(0.0, 1e6)
       .needs(medial);
-  command.addOption("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file; default: 0.01")
+  command
+      .addOption("--mass", body.mass,
+                 "mass of a vertex [kg], written to a .yaml file; default: 0.01, and 2 kg in all at most")
       .within(0.0, 1e6)
       .needs(medial);
 }

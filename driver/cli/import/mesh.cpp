@@ -158,10 +158,11 @@ int importMesh(const MeshImport& options) {
     return fail(kBadInput, options.file + ": " + error.what());
   }
   if (const auto written = writeWhole(options.out, part); !written) return fail(kFailed, written.error());
+  const std::string& called = options.named.empty() ? options.out : options.named;
   if (options.json)
-    std::printf("%s\n", jsonOf(report, options.out).c_str());
+    std::printf("%s\n", jsonOf(report, called).c_str());
   else
-    print(report, options.out);
+    print(report, called);
   return kWorked;
 }
 

@@ -9,6 +9,7 @@ namespace hapticd::cli {
 
 struct MeshImport {
   std::string file, out;
+  std::string named;  ///< what messages call the result; "": `out`
   importing::Placement placement;
   double smooth_angle = 0;  ///< [degrees] see MeshOptions::smooth_angle
   bool json = false;        ///< true prints the report as JSON

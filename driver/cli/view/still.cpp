@@ -8,8 +8,10 @@
 
 #include "base/file_ending.hpp"
 #include "base/shell_word.hpp"
+#include "base/short_number.hpp"
 #include "cli/import/cad.hpp"
 #include "cli/import/mesh.hpp"
+#include "cli/import/patches.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/model_file.hpp"
 #include "mesh_import/mesh_file.hpp"
@@ -23,18 +25,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes a part of a CAD file or a mesh. Returns the exit code.
-int importInto(const std::string& file, const std::string& part) {
+bool isPatches(const std::string& file) {
+  return endingOf(file) == ".bpt";
+}
+
+bool isImported(const std::string& file) {
+  return isCadFile(file) || importing::isMeshFile(file) || isPatches(file);
+}
+
+/// The ending of what a file is imported to.
+std::string endingOfModel(const std::string& file) {
+  return isPatches(file) ? ".yaml" : ".hpart";
+}
+
+/// Makes a model of a CAD file, a mesh or patches. Returns the exit code.
+int importInto(const std::string& file, const std::string& out, double scale) {
+  importing::Placement placement;
+  placement.scale = scale;
+  if (isPatches(file)) return importPatches({file, out, file, placement});
   if (isCadFile(file)) {
     CadImport how;
-    how.file = file;
-    how.out = part;
+    how.file = how.named = file;
+    how.out = out;
+    how.placement = placement;
     return importCad(how);
   }
   MeshImport how;
-  how.file = file;
-  how.out = part;
+  how.file = how.named = file;
+  how.out = out;
+  how.placement = placement;
   return importMesh(how);
+}
+
+/// Returns the command with which a file is felt.
+std::string feltBy(const std::string& file, ModelFile kind, double scale) {
+  const std::string name = shellWord(file);
+  if (kind == ModelFile::kNone) return "hapticd run " + name + " --view";
+  if (!isImported(file)) return "hapticd import " + name + " --scene SCENE.yaml";
+  const std::string scaled = scale == 1 ? "" : " --scale " + withDigits(scale, 6);
+  return "hapticd import " + name + scaled + " -o " + shellWord(fs::path(file).stem().string() + endingOfModel(file)) +
+         " --scene SCENE.yaml";
 }
 
 /// Makes a scene of one model. Reports what is wrong.
@@ -75,17 +105,17 @@ bool Still::is(const std::string& file) {
   const std::string ending = endingOf(file);
   for (const char* other : {".yaml", ".yml", ".json", ".hpart", ".ma"})
     if (ending == other) return true;
-  return isCadFile(file) || importing::isMeshFile(file);
+  return isImported(file);
 }
 
-std::unique_ptr<Still> Still::of(const std::string& file, int& exit_code) {
+std::unique_ptr<Still> Still::of(const std::string& file, double scale, int& exit_code) {
   std::string folder = (fs::temp_directory_path() / "hapticd-still-XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr) {
     exit_code = fail(kFailed, folder + ": cannot be created");
     return nullptr;
   }
   std::unique_ptr<Still> still(new Still(folder));
-  exit_code = still->read(file);
+  exit_code = still->read(file, scale);
   return exit_code == kWorked ? std::move(still) : nullptr;
 }
 
@@ -95,13 +125,14 @@ Still::~Still() {
 }
 
 /// Returns the exit code.
-int Still::read(const std::string& file) {
+int Still::read(const std::string& file, double scale) {
   std::string shown = file;
-  const std::string stem = fs::path(file).stem().string();
-  const bool imported = isCadFile(file) || importing::isMeshFile(file);
-  if (imported) {
-    shown = folder_ + "/" + stem + ".hpart";
-    const int code = importInto(file, shown);
+  if (std::error_code error; !fs::exists(file, error)) return fail(kBadInput, file + ": there is no such file");
+  if (!isImported(file) && scale != 1)
+    return fail(kBadInput, file + ": --scale has an effect only with CAD files, meshes and patches (.bpt)");
+  if (isImported(file)) {
+    shown = folder_ + "/" + fs::path(file).stem().string() + endingOfModel(file);
+    const int code = importInto(file, shown, scale);
     if (code != kWorked) return code;
   }
   const ModelFile kind = modelFileOf(shown);
@@ -112,10 +143,7 @@ int Still::read(const std::string& file) {
   scene->devices.clear();
   if (const auto built = tryModels(*scene); !built) return fail(kBadInput, built.error());
   if (const auto written = writeRecording(*scene, recording()); !written) return fail(kFailed, written.error());
-  const std::string name = shellWord(file);
-  command_ = kind == ModelFile::kNone ? "hapticd run " + name + " --view"
-             : imported ? "hapticd import " + name + " -o " + shellWord(stem + ".hpart") + " --scene SCENE.yaml"
-                        : "hapticd import " + name + " --scene SCENE.yaml";
+  command_ = feltBy(file, kind, scale);
   return kWorked;
 }
 

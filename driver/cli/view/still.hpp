@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Models that are looked at without a run: of a part, a model file, a scene, or a CAD file or mesh.
+/// Models that are looked at without a run: of a part, a model file, a scene, or a CAD file, mesh or
+/// patches.
 #pragma once
 #include <memory>
 #include <string>
@@ -12,8 +13,9 @@ class Still {
   static bool is(const std::string& file);
 
   /// [main] Reads the file and writes a recording of it that has no arm and no tick. Prints what is wrong.
+  /// @param scale factor on the lengths of a file that has to be imported, as in `hapticd import`
   /// @param exit_code receives the exit code if the result is nullptr
-  static std::unique_ptr<Still> of(const std::string& file, int& exit_code);
+  static std::unique_ptr<Still> of(const std::string& file, double scale, int& exit_code);
   ~Still();  ///< also removes the recording
   Still(const Still&) = delete;
   Still& operator=(const Still&) = delete;
@@ -24,7 +26,7 @@ class Still {
 
  private:
   explicit Still(std::string folder) : folder_(std::move(folder)) {}
-  int read(const std::string& file);
+  int read(const std::string& file, double scale);
 
   std::string folder_, command_;
 };

@@ -24,6 +24,7 @@ namespace {
 struct ViewArguments {
   std::string name = "hapticd", file;
   int port = 0;
+  double scale = 1;
   bool control = false, open = false;
 };
 
@@ -63,7 +64,7 @@ int viewRecording(const ViewArguments& options) {
 int viewStill(const ViewArguments& options) {
   os::onStopSignal(passToView);  // the files of the models are removed also after a signal
   int exit_code = kWorked;
-  const auto still = Still::of(options.file, exit_code);
+  const auto still = Still::of(options.file, options.scale, exit_code);
   if (!still) return exit_code;
   if (stopped != 0) return kWorked;
   std::fprintf(stderr, "%s is shown at rest; to feel it: %s\n", options.file.c_str(), still->command().c_str());
@@ -102,7 +103,12 @@ void addView(const Command& app, int& exit_code) {
   command.addOption(
       "--file,recording", options->file,
       "show this file instead of a daemon: a recording or dump, or at rest a part, a model file, a scene, a "
-      "CAD file or a mesh");
+      "CAD file, a mesh or Bezier patches");
+  command
+      .addOption(
+          "--scale", options->scale,
+          "CAD, mesh, patches: metres per unit of the file; CAD: a factor on top of the unit that the file states")
+      .within(1e-9, 1e9);
   command.footer(
       "The command prints the address of the page with a token. Everybody who has the token may look.\nTo look from "
       "another computer, forward the port: ssh -L PORT:127.0.0.1:PORT HOST.\n\nExamples:\n  hapticd view --control "

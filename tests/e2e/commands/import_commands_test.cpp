@@ -30,6 +30,9 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
   const Outcome limit = run("import " + patch + " --scale 1.2 -o " + (dir_ / "limit.yaml").string());
   EXPECT_TRUE(has(limit.text, "limit.yaml: 5.37 m large from corner to corner")) << limit.text;
   EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 2) << "as to run";
+  const Outcome alone = run("import " + patch + " --scene " + (dir_ / "alone.yaml").string());
+  EXPECT_EQ(alone.exit_code, 2) << alone.text;
+  EXPECT_TRUE(has(alone.text, "so --out is required")) << alone.text;
   const Outcome part = run("import " + patch + " -o " + (dir_ / "patch.hpart").string());
   EXPECT_EQ(part.exit_code, 2);
   EXPECT_TRUE(has(part.text, "Bezier patches become a model file, expected a name that ends in .yaml or .json"));

@@ -37,14 +37,19 @@ def ask(file, request):
         return json.loads(line)
 
 
-def shows(file, models, command):
+def shows(file, models, command, *options):
     """The page is served, all models are drawn, and nothing is left behind."""
     name = os.path.basename(file)
-    view = subprocess.Popen([HAPTICD, "view", file], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    view = subprocess.Popen([HAPTICD, "view", file, *options], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     patience = threading.Timer(PATIENCE, view.kill)
     patience.start()
-    lines = iter(view.stdout.readline, "")
-    check(f"{name}: a page is served", any("token=" in line for line in lines))
+    lines = []
+    for line in iter(view.stdout.readline, ""):
+        lines.append(line)
+        if "token=" in line:
+            break
+    check(f"{name}: a page is served", lines and "token=" in lines[-1], lines)
+    check(f"{name}: no temporary file is named", "hapticd-still" not in "".join(lines), lines)
     servers = glob.glob(os.path.join(folder, "hapticd-view-*", "models.sock"))
     listed = [model["name"] for model in ask(servers[0], {"do": "list"})["models"]] if servers else []
     check(f"{name}: its models are listed", listed == models, listed)
@@ -55,11 +60,12 @@ def shows(file, models, command):
     error = view.communicate(timeout=PATIENCE)[1]
     patience.cancel()
     check(f"{name}: how to feel it is said", command in error, error)
+    check(f"{name}: nor by a warning", "hapticd-still" not in error, error)
     check(f"{name}: nothing is left behind", not glob.glob(os.path.join(folder, "hapticd-*")), os.listdir(folder))
 
 
-def refused(file, word):
-    done = subprocess.run([HAPTICD, "view", file], env=environment, capture_output=True, text=True, timeout=PATIENCE)
+def refused(file, word, *options):
+    done = subprocess.run([HAPTICD, "view", file, *options], env=environment, capture_output=True, text=True, timeout=PATIENCE)
     check(f"{os.path.basename(file)}: is refused with its reason", done.returncode == 2 and word in done.stderr and "token" not in done.stdout, done)
     check("and nothing is left behind", not glob.glob(os.path.join(folder, "hapticd-*")), os.listdir(folder))
 
@@ -74,12 +80,15 @@ with tempfile.TemporaryDirectory() as folder:
     shutil.copy(models("branch.ma"), branch)
     shows(branch, ["it's mine"], "it'\\''s mine.ma' --scene SCENE.yaml")
     shows(write(folder, "cube.obj", CUBE), ["cube"], f"hapticd import {folder}/cube.obj -o cube.hpart --scene SCENE.yaml")
+    shows(os.path.join(folder, "cube.obj"), ["cube"], "cube.obj --scale 0.001 -o cube.hpart", "--scale", "0.001")
+    shows(models("teapot.bpt"), ["teapot"], "teapot.bpt -o teapot.yaml --scene SCENE.yaml")
     shows(os.path.join(CONFIG, "scenes", "two-arms.yaml"), ["sphere"], "two-arms.yaml --view")  # its arms are not opened
     real = write(folder, "real.yaml", f"hapticd: 1\ndevice: {CONFIG}/devices/premium15.yaml\nmodels:\n"
                  f"  - {{name: one, plugin: nurbs_rigid, parameters: {{geometry: {models('sphere.yaml')}}}}}\n")
     shows(real, ["one"], f"hapticd run {real} --view")
     refused(write(folder, "bad.hpart", "no part"), "bad.hpart")
-    refused(os.path.join(folder, "none.hpart"), "none.hpart")
+    refused(os.path.join(folder, "none.hpart"), f"error: {folder}/none.hpart: there is no such file")
+    refused(models("as1.hpart"), "--scale has an effect only with", "--scale", "0.5")
     refused(os.path.join(CONFIG, "devices", "premium15.yaml"), "expected a scene file")
     refused(write(folder, "open.yaml", "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {geometry: none.yaml}}\n"), "none.yaml")
 finish()

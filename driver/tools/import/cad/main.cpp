@@ -33,6 +33,7 @@ constexpr int kWorked = 0, kFailed = 1, kBadInput = 2;
 
 struct Options {
   std::string file, out;
+  std::string named;                 ///< what messages call the part; "": `out`
   double memory_mb = 0, time_s = 0;  ///< 0 means no limit
   bool check = false, json = false;
   Placement placement;
@@ -81,7 +82,7 @@ int print(const std::string& text) {
 
 /// Prints the report and writes the part, with the steps of the import among its warnings.
 int finish(const Options& options, brep::Part& part, const Report& report) {
-  const std::string out = options.check ? options.file : options.out;
+  const std::string out = options.check ? options.file : options.named.empty() ? options.out : options.named;
   const std::string text = options.json ? jsonOf(part, report, out) : textOf(part, report, out);
   const std::vector<std::string> steps = stepsOf(report);
   part.warnings.insert(part.warnings.begin(), steps.begin(), steps.end());
@@ -138,6 +139,7 @@ int main(int argc, char** argv) {
   hapticd::cad::Options options;
   app.addOption("file", options.file, ".step, .stp, .iges, .igs, .brep, .brp or .rle").required();
   app.addOption("-o,--out", options.out, "the part file to write (.hpart)");
+  app.addOption("--named", options.named, "what messages call the part; default: the part file");
   app.addOption("--memory", options.memory_mb, "largest memory that the import may use [MB]");
   app.addOption("--time", options.time_s, "largest processor time that the import may use [s]");
   app.addFlag("--check", options.check, "write no file, only report what would be lost");
