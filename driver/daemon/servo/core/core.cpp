@@ -26,7 +26,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       probe_count_(probe_count),
       models_(models.size() + settings.spare_models),
       claims_(models_.size() * probe_count),
-      pushes_(models_.size() * probe_count),
+      energies_(models_.size() * probe_count),
       contacts_(models_.size() * probe_count),
       inputs_(probe_count),
       outputs_(probe_count),

@@ -65,7 +65,6 @@ struct ModelState {
   Breach breach;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< bounds on the change of its force
-  EnergyAccount energy;       ///< that it gave to the probes
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
@@ -216,8 +215,8 @@ class Core {
   std::vector<uint32_t> live_;  // see live(). It is in scene order, so that forces are always added in the same order
   std::vector<Load> loads_;     // costs of the models that were stepped
   LoadShedding shedding_;
-  std::vector<Claim> claims_;     // see at()
-  std::vector<LastPush> pushes_;  // see at()
+  std::vector<Claim> claims_;            // see at()
+  std::vector<EnergyAccount> energies_;  // see at()
   // The answer that is being judged. It is a member, because constructing it for each answer would take as long as
   // judging it.
   ClaimStep claim_step_;

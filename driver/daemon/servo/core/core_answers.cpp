@@ -171,22 +171,22 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
 /// contact may be a push or a magnet.
 bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   const bool rests = (model.shape->description().flags & HSP_C_DEFORMS) == 0 && !(model.claims.jump > 0);
-  double most_force = 0;
+  const double reported = model.shape->storedEnergy();
+  bool too_much = false;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const hsp_probe& in = inputs_[i];
     const hsp_contact& out = outputs_[i];
-    LastPush& last = pushes_[at(index, i)];
-    if ((in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) last.known = false;
+    EnergyAccount& account = energies_[at(index, i)];
+    if ((in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) account.forgetPush();
     if ((in.flags & HSP_IN_INVALID) != 0) continue;
     const bool touches = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0;
     Push push{ConstMap(out.force), ConstMap(in.position), touches ? out.depth_m : 0, touches && rests};
     if (model.claims.moves_itself) push.position = model.frame.pointToModel(last_position_[i]);
     const double most = uses_.max_force[i], square = push.force.squaredNorm();
     if (most > 0 && square > most * most) push.force *= most / std::sqrt(square);
-    most_force = std::max(most_force, most);
-    model.energy.add(push, last);
+    too_much |= account.step(push, dt, reported, most);
   }
-  return model.energy.closeStep(dt, model.shape->storedEnergy(), most_force);
+  return too_much;
 }
 
 /// Returns the place of a model on which its force of the last tick acts.
@@ -300,7 +300,7 @@ void Core::clearContacts(uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     contacts_[at(index, i)] = Contact{};
     claims_[at(index, i)].forget();
-    pushes_[at(index, i)].known = false;
+    energies_[at(index, i)].forgetPush();
   }
 }
 

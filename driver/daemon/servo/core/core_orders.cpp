@@ -59,6 +59,7 @@ bool Core::enable(ModelState& model, uint32_t param) noexcept HSP_RT {
 bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
   if (place.shape != nullptr || order.model == nullptr) return false;
   std::swap(place, *order.model);
+  for (uint32_t i = 0; i < probe_count_; ++i) energies_[at(order.target, i)] = EnergyAccount();
   ++present_;
   place.guard.startAtZero();  // so that the force of the new model fades in
   place.until_free = true;
@@ -81,7 +82,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   // A new value may change the force on a resting probe. Such a jump is not the plugin's fault.
   for (uint32_t i = 0; i < probe_count_; ++i) {
     Claim& claim = claims_[at(order.target, i)];
-    pushes_[at(order.target, i)].asked = true;
+    energies_[at(order.target, i)].noteChange();
     if (settings_.former_claims)
       claim.forget();
     else

@@ -18,34 +18,29 @@ double closed(double given, double stored, double allowed) noexcept HSP_RT {
 
 }  // namespace
 
-void EnergyAccount::add(const Push& push, LastPush& last) noexcept HSP_RT {
-  const double stored = push.force.norm() * std::max(push.depth, 0.0);
+bool EnergyAccount::step(const Push& push, double dt, double reported, double most_force) noexcept HSP_RT {
+  // The shape itself tells the depth. No hand presses deeper than kWay, so a wrong depth is no credit without bound.
+  const double stored = push.force.norm() * std::clamp(push.depth, 0.0, kWay);
   // Nobody knows how a probe that jumped came to its depth, so the contact counts as pressed by a hand.
   double all = -stored, surface = push.surface ? -stored : 0;
-  if (last.known) {
-    const Eigen::Vector3d half = (push.position - last.push.position) / 2;
-    const double before = last.push.force.dot(half), now = push.force.dot(half);
+  if (known_) {
+    const Eigen::Vector3d half = (push.position - last_.position) / 2;
+    const double before = last_.force.dot(half), now = push.force.dot(half);
     all = before + now;
-    if (!last.asked) surface = (last.push.surface ? before : 0) + (push.surface ? now : 0);
+    if (!changed_) surface = (last_.surface ? before : 0) + (push.surface ? now : 0);
     // After a late tick, or a jump of the path, a probe that left is far away. It was pushed over its depth alone.
     if (push.force.isZero(0)) {
-      all = std::min(all, last.stored / 2);
-      surface = std::min(surface, last.stored / 2);
+      all = std::min(all, last_stored_ / 2);
+      surface = std::min(surface, last_stored_ / 2);
     }
   }
-  given_ += surface;
-  given_by_all_ += all;
-  stored_ += stored;
-  last = {push, stored, true, false};
-}
-
-bool EnergyAccount::closeStep(double dt, double reported, double most_force) noexcept HSP_RT {
+  last_ = push, last_stored_ = stored;
+  known_ = true, changed_ = false;
   // Friction that sticks is a spring, which may store more than the wall; but not more than an arm can put in.
   const double room = most_force * kWay;
-  const double stored = std::max(stored_, most_force > 0 ? std::min(reported, room) : reported);
-  given_ = closed(given_, stored, kMostPower * dt);
-  given_by_all_ = closed(given_by_all_, stored, most_force * kSpeed * dt);
-  stored_ = 0;
+  const double back = std::max(stored, most_force > 0 ? std::min(reported, room) : reported);
+  given_ = closed(given_ + surface, back, kMostPower * dt);
+  given_by_all_ = closed(given_by_all_ + all, back, most_force * kSpeed * dt);
   return given_ > kMostGiven || (most_force > 0 && given_by_all_ > room);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "servo/core/core.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -55,6 +56,23 @@ TEST(Core, ServesNoTorqueToArmsThatOnlyPush) {
   EXPECT_TRUE(world->core().torque(0).isZero(0));
   EXPECT_DOUBLE_EQ(world->core().contact(0, 0).world.torque[0], 0.0);
   EXPECT_DOUBLE_EQ(world->core().exchange(0).recoverable, 0.0);
+}
+
+/// A force that draws each of two hands by 0.3 m: each arm has an account of its own, and neither gets too much.
+TEST(Core, AccountsForTheEnergyThatEachArmGets) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("turning"));
+  const WorldOptions options{.rate = scene.servo.rate, .probe_count = 2};
+  auto world = World::build(scene, options, [](int, const std::string&, const std::string&) {});
+  ASSERT_TRUE(world) << world.error();
+  Core& core = (*world)->core();
+  core.serve({.torque = false, .max_force = {1, 1}});
+  for (int i = 0; i <= 300; ++i) {
+    const Probe probe = probeAt({0, 1e-3 * i, 0});
+    core.tick(i * 1e-3, i == 0 ? 0 : 1e-3, std::array{probe, probe});
+    ASSERT_EQ(core.models()[0].guard.fault(), ShapeFault::kNone) << i;
+  }
+  EXPECT_DOUBLE_EQ(core.force(1).y(), 1.0);
 }
 
 TEST(Core, GivesShapesNoTimeBeforeTheStart) {

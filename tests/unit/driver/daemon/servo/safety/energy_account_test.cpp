@@ -15,10 +15,8 @@ constexpr double kTick = 1e-3;
 /// One probe on one surface.
 struct Book {
   EnergyAccount account;
-  LastPush last;
   bool step(double x, double force, double depth) {
-    account.add({{force, 0, 0}, {x, 0, 0}, depth, true}, last);
-    return account.closeStep(kTick);
+    return account.step({{force, 0, 0}, {x, 0, 0}, depth, true}, kTick);
   }
 };
 
@@ -62,10 +60,8 @@ TEST(EnergyAccount, WhatFrictionTookIsNotGivenBack) {
 /// Friction that sticks: 100 N/m, stretched by 0.1 m, in a wall that is 1 mm deep. It may give back what it took, once.
 TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
   EnergyAccount account;
-  LastPush last;
   const auto step = [&](double x, double pull) {
-    account.add({{-pull, 0, 0}, {x, 0, 0}, 1e-3, true}, last);
-    return account.closeStep(kTick, 0.5 * 100 * x * x);
+    return account.step({{-pull, 0, 0}, {x, 0, 0}, 1e-3, true}, kTick, 0.5 * 100 * x * x);
   };
   for (int i = 0; i <= 100; ++i) ASSERT_FALSE(step(1e-3 * i, 0.1 * i));
   for (int i = 100; i >= 0; --i) ASSERT_FALSE(step(1e-3 * i, 0.1 * i));
@@ -75,23 +71,33 @@ TEST(EnergyAccount, WhatAShapeReportsToStoreMayComeBackAndNoMore) {
   EXPECT_TRUE(found);
 }
 
-TEST(EnergyAccount, AShapeThatReportsToStoreAThousandJoulesGivesBackNoMoreThanAnArmPutsIn) {
+/// It may report the energy, or a depth of a thousand metres.
+TEST(EnergyAccount, AShapeThatPretendsToStoreAThousandJoulesGivesBackNoMoreThanAnArmPutsIn) {
+  for (const auto& [depth, reported] : {std::pair(1e-3, 1000.0), std::pair(1000.0, 0.0)}) {
+    EnergyAccount account;
+    double x = 0, given = 0;
+    const auto step = [&](double push) {
+      return account.step({{push, 0, 0}, {x += 1e-3, 0, 0}, depth, true}, kTick, reported, 8);
+    };
+    for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step(-8));  // 40 J
+    while (given < 30 && !step(8)) given += 8e-3;
+    EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven) << depth;
+  }
+}
+
+/// A lost sample is no credit without bound, either.
+TEST(EnergyAccount, AWrongDepthAfterALostSampleHidesNoMoreThanAnArmPutsIn) {
   EnergyAccount account;
-  LastPush last;
+  account.forgetPush();
   double x = 0, given = 0;
-  const auto step = [&](double push) {
-    account.add({{push, 0, 0}, {x += 1e-3, 0, 0}, 1e-3, true}, last);
-    return account.closeStep(kTick, 1000, 8);
-  };
-  for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step(-8));  // 40 J
-  while (given < 30 && !step(8)) given += 8e-3;
+  while (given < 30 && !account.step({{8, 0, 0}, {x += 1e-3, 0, 0}, 1000, true}, kTick, 0, 8)) given += 8e-3;
   EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven);
 }
 
 TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
   Book book;
   for (int turn = 0; turn < 20; ++turn) {
-    book.last.known = false;
+    book.account.forgetPush();
     for (int i = 50; i >= 0; --i) ASSERT_FALSE(book.step(-1e-3 * i, 160e-3 * i, 1e-3 * i)) << turn;
   }
 }
@@ -120,12 +126,8 @@ TEST(EnergyAccount, ALittlePowerIsAllowedForever) {
 /// One probe in a field, or in another thing that has no hard surface.
 struct FieldBook {
   EnergyAccount account;
-  LastPush last;
   static constexpr double kForce = 8;  // [N] that the arm lets through
-  bool step(double x, double force) {
-    account.add({{force, 0, 0}, {x, 0, 0}, 0, false}, last);
-    return account.closeStep(kTick, 0, kForce);
-  }
+  bool step(double x, double force) { return account.step({{force, 0, 0}, {x, 0, 0}, 0, false}, kTick, 0, kForce); }
 };
 
 TEST(EnergyAccount, AMagnetDrawsTheHandAcrossTheRoomOfTheArmAsOftenAsItLikes) {
@@ -158,14 +160,12 @@ TEST(EnergyAccount, AForceThatGoesAlongWithTheHandIsFoundOut) {
 /// A program that sets a parameter in each tick may make a surface give as much, and no more.
 TEST(EnergyAccount, ASurfaceThatAProgramSetsInEachTickIsJudgedAsAField) {
   EnergyAccount account;
-  LastPush last;
   double x = 0;
   bool found = false;
   for (int i = 0; i < 3000 && !found; ++i) {
     const int way = i / 60 % 2 == 0 ? 1 : -1;
-    last.asked = true;
-    account.add({{8.0 * way, 0, 0}, {x += 1e-3 * way, 0, 0}, 1e-3, true}, last);
-    found = account.closeStep(kTick, 0, 8);
+    account.noteChange();
+    found = account.step({{8.0 * way, 0, 0}, {x += 1e-3 * way, 0, 0}, 1e-3, true}, kTick, 0, 8);
     EXPECT_LE(account.given(), 0);
   }
   EXPECT_TRUE(found);
