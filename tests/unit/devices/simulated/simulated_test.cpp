@@ -2,24 +2,12 @@
 #include <random>
 
 #include "module.hpp"
+#include "stroke.hpp"
 
 namespace hapticd::simulated {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Every position of a second of stroking with a spring wall of 800 N/m in the way.
-std::vector<double> strokeOf(Module& arm, int milliseconds = 1000) {
-  std::vector<double> all;
-  EXPECT_EQ(arm.start(), HSP_OK) << arm.said;
-  for (int i = 0; i < milliseconds; ++i) {
-    arm.read(kMillisecond);
-    all.insert(all.end(), arm.sample.position, arm.sample.position + 3);
-    const double depth = 0.04 - arm.tip().norm();
-    arm.write(HDV_TORQUE, arm.torqueOf(depth > 0 ? Vector3d(800 * depth * arm.tip().normalized()) : Vector3d::Zero()));
-  }
-  return all;
-}
 
 TEST(Simulated, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
   std::vector<double> runs[3];
@@ -254,157 +242,6 @@ TEST(Simulated, SaysWhichListHasTheWrongLength) {
   chain.set("arm.kind", 1);
   EXPECT_LT(chain.start(), 0);
   EXPECT_NE(chain.said.find("arm.dh: has no rows"), std::string::npos) << chain.said;
-}
-
-/// The Premium 1.5 said in the words of a twin: every published number given in the file.
-void describePremiumAsPhantom(Module& arm) {
-  const std::vector<double> gear = {13.3, 11.2, 11.2};
-  arm.set("arm.kind", 2);
-  arm.set("arm.lengths", std::vector<double>{0.215, 0.170, 0.0325, -0.0368, 0.0527});
-  arm.set("arm.masses", std::vector<double>{0.0202, 0.0249, 0.2359, 0.1906});
-  arm.set("arm.inertias", std::vector<double>{0.4864e-4, 0.001843e-4, 0.4864e-4,  // a
-                                              0.959e-4, 0.959e-4, 0.0051e-4,      // c
-                                              11.09e-4, 10.06e-4, 0.591e-4,       // be
-                                              7.11e-4, 0.629e-4, 6.246e-4,        // df
-                                              0, 11.87e-4, 0});                   // base
-  arm.set("arm.max_torque", std::vector<double>{0.129 * 13.3, 0.129 * 11.2, 0.129 * 11.2});
-  arm.set("joint.gear", gear);
-  arm.set("joint.counts", std::vector<double>{4096});
-  arm.set("joint.rotor", std::vector<double>{1.08e-6});
-  arm.set("joint.damping", std::vector<double>{0.0005});
-  arm.set("joint.friction", std::vector<double>{0.01});
-}
-
-TEST(Simulated, APhantomWithThePremiumsNumbersIsThePremium) {
-  Module premium, twin;
-  describePremiumAsPhantom(twin);
-  EXPECT_EQ(strokeOf(premium, 400), strokeOf(twin, 400));
-}
-
-// WoodenHaptics, whose calibration pose has the upper body upright, the forearm level and the tip at (0, 0.45, 0.04).
-TEST(Simulated, APhantomHasTheReachOfItsOwnLengths) {
-  Module arm;
-  arm.set("arm.kind", 2);
-  arm.set("arm.lengths", std::vector<double>{0.205, 0.245, 0, 0, 0});
-  arm.set("arm.masses", std::vector<double>{0, 0, 0, 0});
-  arm.set("arm.limits", std::vector<double>{-1.5, 1.5, -0.2, 2.2, 0.3, 2.8});
-  arm.set("hand.script", kHold);
-  arm.set("hand.center", std::vector<double>{0, 0.45, 0.04});
-  arm.set("hand.radius", 0.0), arm.set("hand.approach", 0.0);
-  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
-  arm.read(kMillisecond);
-  EXPECT_LT((arm.joints() - Vector3d(0, M_PI / 2, M_PI / 2)).norm(), 1e-9);
-  EXPECT_LT((arm.tip() - Vector3d(0, 0.45, 0.04)).norm(), 1e-9);
-  EXPECT_EQ(arm.info.position_max[2], 2.8);
-}
-
-TEST(Simulated, APhantomWithoutAHandBeginsWithinItsStops) {
-  Module arm;
-  arm.set("arm.kind", 2);
-  arm.set("arm.limits", std::vector<double>{-1.5, 1.5, 0.1, 2.2, 0.3, 2.8});
-  arm.set("hand.script", kNone);
-  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
-  arm.read(0);
-  EXPECT_EQ(arm.joints(), Vector3d(0, 0.1, 0.3));
-}
-
-TEST(Simulated, SaysWhichListOfAPhantomHasTheWrongLength) {
-  const auto said = [](const char* id, size_t numbers) {
-    Module arm;
-    arm.set("arm.kind", 2);
-    arm.set(id, std::vector<double>(numbers, 0.1));
-    EXPECT_LT(arm.start(), 0) << id;
-    return arm.said;
-  };
-  EXPECT_NE(said("arm.lengths", 2).find("arm.lengths: 2 numbers, expected 5"), std::string::npos);
-  EXPECT_NE(said("arm.masses", 3).find("arm.masses: 3 numbers, expected 4"), std::string::npos);
-  EXPECT_NE(said("arm.limits", 4).find("arm.limits: 2 rows, expected 3"), std::string::npos);
-  EXPECT_NE(said("arm.max_torque", 2).find("arm.max_torque: 2 numbers, expected 1 or 3"), std::string::npos);
-  Module premium;
-  premium.set("arm.lengths", std::vector<double>(5, 0.1));
-  EXPECT_LT(premium.start(), 0);
-  EXPECT_NE(premium.said.find("expected arm.kind phantom"), std::string::npos) << premium.said;
-  for (const char* idle : {"arm.masses", "arm.limits", "arm.inertias"}) {
-    Module ignoring;
-    ignoring.set(idle, std::vector<double>(6, 0.1));
-    EXPECT_LT(ignoring.start(), 0) << idle;
-    EXPECT_NE(ignoring.said.find(std::string(idle) + ": a premium15 has fixed"), std::string::npos) << ignoring.said;
-  }
-  Module both;
-  both.set("arm.kind", 2);
-  both.set("arm.max_torque", std::vector<double>{1}), both.set("joint.max_torque", std::vector<double>{1});
-  EXPECT_LT(both.start(), 0);
-  EXPECT_NE(both.said.find("remove one of the two"), std::string::npos) << both.said;
-}
-
-/// A chain of three joints with sensors and its own position loop.
-void describeChain(Module& arm) {
-  arm.set("arm.kind", 1);
-  arm.set("arm.dh", std::vector<double>{0, M_PI / 2, 0.1, 0, 0.3, 0, 0, 0.5, 0.25, 0, 0, -1});
-  arm.set("arm.masses", std::vector<double>{1, 1, 0.5});
-  arm.set("arm.centers", std::vector<double>{0, 0, 0, -0.15, 0, 0, -0.1, 0, 0});
-  arm.set("arm.inertias", std::vector<double>{0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.005, 0.005, 0.005});
-  arm.set("arm.limits", std::vector<double>{-2, 2, -1, 1.5, -1.2, 1.2});
-  arm.set("joint.damping", std::vector<double>{0.1});
-  arm.set("joint.stiffness", std::vector<double>{2000});
-  arm.set("joint.rate_damping", std::vector<double>{40});
-  arm.set("joint.torque_sensors", 1);
-  arm.set("hand.script", kNone);
-}
-
-TEST(SimulatedChain, MeasuresTheForceThatTheHandPushesWith) {
-  Module arm;
-  describeChain(arm);
-  arm.set("hand.script", kHold), arm.set("hand.radius", 0.0), arm.set("hand.approach", 0.0);
-  arm.set("hand.center", std::vector<double>{0.4, 0.05, 0.2}), arm.set("hand.stiffness", 500);
-  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
-  const Vector3d force(2, -1, 1.5);
-  for (int i = 0; i < 4000; ++i) {
-    arm.read(kMillisecond);
-    arm.write(HDV_TORQUE, arm.torqueOf(force));
-  }
-  EXPECT_TRUE((arm.info.capabilities & HDV_C_TORQUE) != 0 && (arm.sample.flags & HDV_S_TORQUE) != 0);
-  const Eigen::VectorXd measured = Eigen::Map<const Eigen::VectorXd>(arm.sample.torque, 3);
-  EXPECT_LT((measured - arm.torqueOf(force)).norm(), 1e-3);
-  const Vector3d center(0.4, 0.05, 0.2);
-  EXPECT_LT((arm.tip() - center - force / 500).norm(), 1e-4);
-}
-
-TEST(SimulatedChain, FollowsAMovingReferenceWithoutTheLagOfItsDamping) {
-  Module arm;
-  describeChain(arm);
-  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
-  arm.read(kMillisecond);
-  Eigen::VectorXd wanted = arm.joints();
-  for (int i = 0; i < 1000; ++i) {
-    wanted += Eigen::Vector3d::Constant(0.2e-3);  // 0.2 rad/s; against standing still the damping would lag by 4 mrad
-    hdv_command command{};
-    command.struct_size = sizeof command;
-    command.mode = HDV_POSITION;
-    const Eigen::VectorXd weight = arm.torqueOf(Vector3d::Zero());
-    for (int j = 0; j < 3; ++j) command.position[j] = wanted[j], command.torque[j] = weight[j];
-    arm.write(command);
-    arm.read(kMillisecond);
-  }
-  EXPECT_LT((arm.joints() - wanted).norm(), 5e-4);
-}
-
-TEST(SimulatedChain, HoldsAPositionReference) {
-  Module arm;
-  describeChain(arm);
-  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
-  EXPECT_NE(arm.info.capabilities & HDV_C_POSITION, 0u);
-  const Vector3d wanted(0.3, 0.2, -0.1);
-  for (int i = 0; i < 3000; ++i) {
-    arm.read(kMillisecond);
-    hdv_command command{};
-    command.struct_size = sizeof command;
-    command.mode = HDV_POSITION;
-    const Eigen::VectorXd weight = arm.torqueOf(Vector3d::Zero());
-    for (int j = 0; j < 3; ++j) command.position[j] = wanted[j], command.torque[j] = weight[j];
-    arm.write(command);
-  }
-  EXPECT_LT((arm.joints() - wanted).norm(), 1e-4);
 }
 
 }  // namespace
