@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/recording/recorded_models.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "cli/recording/tick_times.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/scratch_folder.hpp"
 #include "control/request.hpp"
 #include "control/server.hpp"
 #include "document/json_text.hpp"
@@ -32,11 +30,7 @@ using control::Request;
 
 class RecordedModelsImpl final : public RecordedModels {
  public:
-  ~RecordedModelsImpl() override {
-    server_.reset();
-    std::error_code error;
-    if (!folder_.empty()) std::filesystem::remove_all(folder_, error);
-  }
+  ~RecordedModelsImpl() override { server_.reset(); }  // before the folder of its socket
 
   Result<void> open(const std::string& file) {
     auto recording = record::Recording::open(file);
@@ -46,10 +40,10 @@ class RecordedModelsImpl final : public RecordedModels {
     recording_ = std::move(*recording);
     const servo::RunModels models(*recording_, run->scene);
     for (const servo::RunModel& one : models.all()) models_.push_back(build(run->scene, one, run->facts.rate));
-    std::string folder = (std::filesystem::temp_directory_path() / "hapticd-view-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) return Error{folder + ": cannot be created"};
-    folder_ = folder;
-    socket_ = folder_ + "/models.sock";
+    auto folder = ScratchFolder::make("view");
+    if (!folder) return Error{folder.error()};
+    folder_ = std::move(*folder);
+    socket_ = folder_.path() + "/models.sock";
     auto server = control::Server::listen(socket_);
     if (!server) return Error{server.error()};
     server_ = std::move(*server);
@@ -160,7 +154,8 @@ class RecordedModelsImpl final : public RecordedModels {
 
   std::unique_ptr<record::Recording> recording_;
   std::vector<Built> models_;  // declared after the recording that the models read, so that they are destroyed first
-  std::string folder_, socket_;
+  ScratchFolder folder_;
+  std::string socket_;
   std::unique_ptr<control::Server> server_;
 };
 

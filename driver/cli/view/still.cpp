@@ -14,6 +14,7 @@
 #include "cli/import/patches.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/model_file.hpp"
+#include "cli/support/scratch_folder.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "record/recording_file.hpp"
 #include "session/replay/about.hpp"
@@ -109,19 +110,14 @@ bool Still::is(const std::string& file) {
 }
 
 std::unique_ptr<Still> Still::of(const std::string& file, double scale, int& exit_code) {
-  std::string folder = (fs::temp_directory_path() / "hapticd-still-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    exit_code = fail(kFailed, folder + ": cannot be created");
+  auto folder = ScratchFolder::make("still");
+  if (!folder) {
+    exit_code = fail(kFailed, folder.error());
     return nullptr;
   }
-  std::unique_ptr<Still> still(new Still(folder));
+  std::unique_ptr<Still> still(new Still(std::move(*folder)));
   exit_code = still->read(file, scale);
   return exit_code == kWorked ? std::move(still) : nullptr;
-}
-
-Still::~Still() {
-  std::error_code error;
-  fs::remove_all(folder_, error);
 }
 
 /// Returns the exit code.
@@ -131,7 +127,7 @@ int Still::read(const std::string& file, double scale) {
   if (!isImported(file) && scale != 1)
     return fail(kBadInput, file + ": --scale has an effect only with CAD files, meshes and patches (.bpt)");
   if (isImported(file)) {
-    shown = folder_ + "/" + fs::path(file).stem().string() + endingOfModel(file);
+    shown = folder_.path() + "/" + fs::path(file).stem().string() + endingOfModel(file);
     const int code = importInto(file, shown, scale);
     if (code != kWorked) return code;
   }

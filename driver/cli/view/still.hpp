@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "cli/support/scratch_folder.hpp"
+
 namespace hapticd::cli {
 
 class Still {
@@ -16,19 +18,18 @@ class Still {
   /// @param scale factor on the lengths of a file that has to be imported, as in `hapticd import`
   /// @param exit_code receives the exit code if the result is nullptr
   static std::unique_ptr<Still> of(const std::string& file, double scale, int& exit_code);
-  ~Still();  ///< also removes the recording
-  Still(const Still&) = delete;
-  Still& operator=(const Still&) = delete;
 
-  std::string recording() const { return folder_ + "/still.h5"; }
+  /// Returns the file of the recording, which is removed with this object.
+  std::string recording() const { return folder_.path() + "/still.h5"; }
   /// Returns the command with which the file is felt.
   const std::string& command() const { return command_; }
 
  private:
-  explicit Still(std::string folder) : folder_(std::move(folder)) {}
+  explicit Still(ScratchFolder folder) : folder_(std::move(folder)) {}
   int read(const std::string& file, double scale);
 
-  std::string folder_, command_;
+  ScratchFolder folder_;
+  std::string command_;
 };
 
 }  // namespace hapticd::cli

@@ -88,6 +88,8 @@ with tempfile.TemporaryDirectory() as folder:
     shows(real, ["one"], f"hapticd run {real} --view")
     refused(write(folder, "bad.hpart", "no part"), "bad.hpart")
     refused(os.path.join(folder, "none.hpart"), f"error: {folder}/none.hpart: there is no such file")
+    nowhere = subprocess.run([HAPTICD, "view", models("as1.hpart")], env=dict(environment, TMPDIR="/nowhere"), capture_output=True, text=True, timeout=PATIENCE)
+    check("a folder for temporary files that is not there is named", nowhere.returncode == 1 and "TMPDIR: No such file" in nowhere.stderr, nowhere)
     refused(models("as1.hpart"), "--scale has an effect only with", "--scale", "0.5")
     refused(os.path.join(CONFIG, "devices", "premium15.yaml"), "expected a scene file")
     refused(write(folder, "open.yaml", "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {geometry: none.yaml}}\n"), "none.yaml")
