@@ -45,12 +45,17 @@ def examples(folder):
     ticks = re.match(r"(\d+) ticks answered", done.stdout)
     check("spring.c", done.returncode == 0 and ticks and int(ticks[1]) > 100, done)
     done = subprocess.run([SPRING, "nobody"], env=environment, capture_output=True, text=True, timeout=60)
-    check("spring.c tells of a daemon that is none", done.returncode == 1 and all(words in done.stderr for words in (
-        "no daemon named nobody runs", "these run: lib", "hapticd run SCENE --name nobody", "give hapticd_connect the name of one of these")), done)
+    check("spring.c tells of a daemon that is none", done.returncode == 1 and names_the_others(done.stderr, "give hapticd_connect the name of one of these"),
+          done)
     done = subprocess.run([sys.executable, "-c", "import hapticd\nhapticd.connect('nobody')"], env=dict(environment, PYTHONPATH=CLIENT), capture_output=True,
                           text=True, timeout=60)
-    check("Python does, too", all(words in done.stderr for words in (
-        "no daemon named nobody runs; these run: lib", "hapticd run SCENE --name nobody", "hapticd.connect(NAME)")), done)
+    check("Python does, too", names_the_others(done.stderr, "hapticd.connect(NAME)"), done)
+
+
+def names_the_others(message, fix):
+    """Another daemon may run on this machine, so ours need not be the only one."""
+    return (re.search(r"no daemon named nobody runs;?\s+(in \S+ )?these run: (.*, )?lib\b", message)
+            and "hapticd run SCENE --name nobody" in message and fix in message)
 
 
 def leads_a_model(client):
