@@ -26,6 +26,7 @@
 #include "servo/safety/passivity/controller.hpp"
 #include "servo/safety/sample_speed.hpp"
 #include "servo/velocity/probe_velocity.hpp"
+#include "servo/velocity/sample_interval.hpp"
 
 namespace hapticd::servo {
 
@@ -188,8 +189,10 @@ class Arm {
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
-  double fresh_after_ = 0;  // [s] time between the last two new samples
-  bool fresh_ = false;      // true if the sample of this tick is new
+  double fresh_after_ = 0;     // [s] time between the ticks that saw the last two new samples
+  double measured_after_ = 0;  // [s] time between the measurements of these samples
+  SampleInterval interval_;
+  bool fresh_ = false;  // true if the sample of this tick is new
   bool watches_jumps_ = false, tip_known_ = false;
   double fastest_ = 0;        // [m/s] a larger speed between two samples is a jump; 0: unbounded
   double sample_period_ = 0;  // [s] time between two samples of the arm; 0: unknown

@@ -57,7 +57,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   // A device slower than the servo repeats its sample. The estimator gets only new samples: a repeated one would look
   // like rest, and the next new one like several times the speed of the hand. A virtual mass moves in every tick.
   if (velocity_ && (fresh_ || admittance_)) {
-    probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
+    probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : measured_after_);
     limiter_.watchVelocity(probe_.velocity);
     if (velocity_->speed() > kMaxProbeSpeed) limiter_.watchSpeed(velocity_->speed());
   }
@@ -80,6 +80,7 @@ bool Arm::checkSample(hsp_status status, Nanoseconds now) noexcept HSP_RT {
     last_sequence_ = sample_.sequence;
     fresh_after_ = static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond;
     fresh_at_ = now;
+    measured_after_ = interval_.update(sample_.time_ns, fresh_after_);
   } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
     trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
     return false;

@@ -21,7 +21,7 @@ struct Log {
 };
 
 struct Gantry : hapticd::Device {
-  double depth, fail_at, well_at, speed;
+  double depth, fail_at, well_at, speed, own_rate;
   int failure, every;
   bool hardware;
   Log log{};
@@ -37,7 +37,8 @@ struct Gantry : hapticd::Device {
                       F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again."),
                       F::boolean("hardware", &Gantry::hardware, false, "It says that it is no simulation."),
                       F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving."),
-                      F::integer("every", &Gantry::every, "", 1, 1000, 1, "Only so many reads have a new sample.")};
+                      F::integer("every", &Gantry::every, "", 1, 1000, 1, "Only so many reads have a new sample."),
+                      F::real("own_rate", &Gantry::own_rate, "Hz", 0, 1e5, 0, "Of its measurements; 0: of read().")};
   }
 
   void open(hdv_info& info) {
@@ -54,7 +55,8 @@ struct Gantry : hapticd::Device {
       ++log.reads;
       return HSP_OK;
     }
-    const double t = static_cast<double>(now_ns - start_ns_) * 1e-9;
+    double t = static_cast<double>(now_ns - start_ns_) * 1e-9;
+    if (own_rate > 0 && !measures(t, sample)) return HSP_OK;
     const bool failed = t >= fail_at && t < well_at;
     bad_gravity_ = failed && failure == 10;
     bad_orientation_ = failed && failure == 11;
@@ -72,6 +74,13 @@ struct Gantry : hapticd::Device {
     if (!failed || failure != 3) ++sample.sequence;
     ++log.reads;
     return HSP_OK;
+  }
+  /// Gives the last measurement before a time [s] its stamp. Returns false if an earlier read has seen it.
+  bool measures(double& t, hdv_sample& sample) noexcept HSP_RT {
+    const double before = measured_;
+    t = measured_ = std::floor(t * own_rate) / own_rate;
+    sample.time_ns = start_ns_ + 1 + static_cast<uint64_t>(std::llround(1e9 * t));
+    return measured_ > before;
   }
   /// Once in a thousand reads something goes wrong, for up to 80 reads.
   hsp_status failAtRandom(hdv_sample& sample) noexcept HSP_RT {
@@ -135,6 +144,7 @@ struct Gantry : hapticd::Device {
 
  private:
   uint64_t start_ns_ = 0, random_ = 1;
+  double measured_ = -1;  // [s] time of the last measurement
   int bad_left_ = 0, bad_ = 0;
   bool bad_gravity_ = false, bad_orientation_ = false, bad_jacobian_ = false;
 };

@@ -272,5 +272,24 @@ TEST(SlowDevice, GivesTheVelocityOfTheHand) {
   EXPECT_EQ(arm.limiter().fault(), Fault::kNone);
 }
 
+/// The arm measures at its own rate. What a tick sees was measured now shortly and now long before it.
+TEST(DeviceOfItsOwnRate, GivesTheVelocityOfTheHand) {
+  constexpr double kSpeed = 0.5;
+  for (const double rate : {401.0, 667.0, 999.7, 1000.3, 1500.0, 4001.0}) {
+    Rig rig(
+        kMoves, [](Nanoseconds) { return Nanoseconds{0}; }, 1000, "wall", {}, {},
+        {number(1, HSP_REAL, 0), number(4, HSP_BOOL, 1), number(5, HSP_REAL, kSpeed), number(7, HSP_REAL, rate)},
+        [](scene::Limits& limits) { limits.velocity = 1; });
+    Arm& arm = *rig.arms[0];
+    for (int i = 0; i < 5000; ++i) {
+      const Probe& probe = arm.read(static_cast<Nanoseconds>(i) * 1'000'000, i == 0 ? 0 : 1e-3);
+      ASSERT_TRUE(probe.valid);
+      if (i > 100) {
+        ASSERT_NEAR(probe.velocity.x(), kSpeed, 1e-6) << rate << " Hz, tick " << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::servo
