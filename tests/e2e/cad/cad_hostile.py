@@ -105,6 +105,7 @@ others = [name for name in os.listdir(folder) if name.startswith("apart_")]
 read_with("parts in files beside it are read", "nothing was lost", join("apart.step"))
 code, out, err = run("import", os.path.join(os.path.basename(folder), "apart.step"), "-o", part, cwd=os.path.dirname(folder))
 check("so they are if the path begins at the working folder", code == 0 and "nothing was lost" in out, out + err)
+os.remove(part)
 for name in others:
     os.remove(join(name))
 told("a part in a file that is not there is told with that file", others[0], join("apart.step"))

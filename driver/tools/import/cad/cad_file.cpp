@@ -67,8 +67,8 @@ std::string noShapes(const std::vector<brep::Loss>& losses) {
 
 constexpr std::string_view kMark = "\xef\xbb\xbf";  ///< byte order mark, which some editors write before UTF-8 text
 
-/// Reads a STEP file. Open CASCADE refuses a file that begins with a byte order mark, so the mark is skipped. Files that
-/// it refers to are found beside it only if its path begins at the root.
+/// Reads a STEP file. Open CASCADE refuses a file that begins with a byte order mark, so the mark is skipped. Files
+/// that it refers to are found beside it only if its path begins at the root.
 bool parseStep(const std::string& file, bool marked, STEPCAFControl_Reader& reader) {
   const std::string path = std::filesystem::absolute(file).string();
   if (!marked) return reader.ReadFile(path.c_str()) == IFSelect_RetDone;
