@@ -103,6 +103,9 @@ check("a solid with a cavity is read without a warning", code == 0 and "faces tr
 read_with("a solid whose faces bound no single volume is told", "of 12 faces tried", join("crossing_cavity.brep"))
 others = [name for name in os.listdir(folder) if name.startswith("apart_")]
 read_with("parts in files beside it are read", "nothing was lost", join("apart.step"))
+code, out, err = run("import", os.path.join(os.path.basename(folder), "apart.step"), "-o", part, cwd=os.path.dirname(folder))
+check("so they are if the path begins at the working folder", code == 0 and "nothing was lost" in out, out + err)
+os.remove(part)
 for name in others:
     os.remove(join(name))
 told("a part in a file that is not there is told with that file", others[0], join("apart.step"))

@@ -67,12 +67,14 @@ std::string noShapes(const std::vector<brep::Loss>& losses) {
 
 constexpr std::string_view kMark = "\xef\xbb\xbf";  ///< byte order mark, which some editors write before UTF-8 text
 
-/// Reads a STEP file. Open CASCADE refuses a file that begins with a byte order mark, so the mark is skipped.
+/// Reads a STEP file. Open CASCADE refuses a file that begins with a byte order mark, so the mark is skipped. Files
+/// that it refers to are found beside it only if its path begins at the root.
 bool parseStep(const std::string& file, bool marked, STEPCAFControl_Reader& reader) {
-  if (!marked) return reader.ReadFile(file.c_str()) == IFSelect_RetDone;
+  const std::string path = std::filesystem::absolute(file).string();
+  if (!marked) return reader.ReadFile(path.c_str()) == IFSelect_RetDone;
   std::ifstream in(file, std::ios::binary);
   in.seekg(static_cast<std::streamoff>(kMark.size()));
-  return reader.ChangeReader().ReadStream(file.c_str(), in) == IFSelect_RetDone;
+  return reader.ChangeReader().ReadStream(path.c_str(), in) == IFSelect_RetDone;
 }
 
 /// Returns why Open CASCADE may have refused a STEP file. @param start the first bytes of the file

@@ -2,11 +2,9 @@
 /// Bodies that the probe is certainly outside of. They need not be searched again while it stays near.
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-
-#include "kernels/brep/model/model.hpp"
+#include <vector>
 
 namespace hapticd::brep {
 
@@ -14,36 +12,30 @@ namespace hapticd::brep {
 /// ball is outside everywhere in it.
 class OutsideBodies {
  public:
-  static constexpr std::size_t kMost = 8;
+  /// [main] @param places number of placements of the model
+  explicit OutsideBodies(std::size_t places) : balls_(places) {}
 
   /// [rt] Forgets everything.
-  void reset() noexcept { *this = {}; }
+  void reset() noexcept { ++age_; }
   /// [rt] Records that p is outside of a body. @param distance [m] lower bound of the distance from p to its surface
   void keep(std::uint32_t place, const Eigen::Vector3d& p, double distance) noexcept {
-    for (Ball& ball : balls_)
-      if (ball.place == place) {
-        ball = {place, p, distance};
-        return;
-      }
-    balls_[oldest_] = {place, p, distance};
-    oldest_ = (oldest_ + 1) % kMost;
+    balls_[place] = {p, distance, age_};
   }
   /// [rt] True if p is certainly outside of a body.
   bool isOutside(std::uint32_t place, const Eigen::Vector3d& p) const noexcept {
     constexpr double kRoundedDown = 1 - 1e-9;
-    for (const Ball& ball : balls_)
-      if (ball.place == place) return (p - ball.center).norm() < ball.radius * kRoundedDown;
-    return false;
+    const Ball& ball = balls_[place];
+    return ball.age == age_ && (p - ball.center).norm() < ball.radius * kRoundedDown;
   }
 
  private:
   struct Ball {
-    std::uint32_t place = kNone;
     Eigen::Vector3d center{0, 0, 0};
-    double radius = 0;  // [m]
+    double radius = 0;      // [m]
+    std::uint64_t age = 0;  // age_ when it was kept; a ball of another age is forgotten
   };
-  std::array<Ball, kMost> balls_;
-  std::size_t oldest_ = 0;
+  std::vector<Ball> balls_;  // one for each placement
+  std::uint64_t age_ = 1;
 };
 
 }  // namespace hapticd::brep

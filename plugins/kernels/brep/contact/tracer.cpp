@@ -11,7 +11,8 @@ using Eigen::Vector3d;
 
 namespace {
 constexpr double kFarthest = 1e12;  ///< [m] from farther away, distances to a part have too few digits
-constexpr int kMostAround = 8;      ///< most bodies whose boxes contain the probe that one tick examines
+constexpr int kMostAround = 64;     ///< most bodies whose boxes contain the probe that one tick looks at
+constexpr int kMostSearched = 8;    ///< most of them that it searches; the next ticks search the others
 }  // namespace
 
 /// Lets contact::ContactState query the part at the probe of this tick.
@@ -78,7 +79,7 @@ class Tracer::Faces {
   const Vector3d& p_;
 };
 
-Tracer::Tracer(const Model& model) : search_(model) {}
+Tracer::Tracer(const Model& model) : search_(model), outside_(model.placements().size()) {}
 
 void Tracer::reset() noexcept {
   search_.reset();
@@ -104,17 +105,20 @@ Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
 }
 
 /// A probe that is outside the nearest body may be inside another one whose surface is farther away. Then `foot`
-/// becomes the foot on that body, or on the one with the greatest depth if there are several. @param proved `foot` is
-/// certain. Returns whether it still is.
-bool Tracer::preferDeepestAround(const Vector3d& p, bool proved, Foot& foot) noexcept {
-  std::array<std::uint32_t, kMostAround> around{};
+/// becomes the foot on that body, or on the one with the greatest depth if there are several. Returns false if that is
+/// not certain: a search was not, or some bodies are left for the next ticks.
+bool Tracer::preferDeepestAround(const Vector3d& p, Foot& foot) noexcept {
+  std::array<std::uint32_t, kMostAround> around;
   const int count = search_.around(p, around.data(), kMostAround);
-  for (int i = 0; i < count; ++i) {
+  bool certain = count < kMostAround;
+  for (int i = 0, searched = 0; i < count; ++i) {
     const std::uint32_t place = around[static_cast<std::size_t>(i)];
     if (place == nearest_.place && !(foot.depth > 0)) continue;
     if (outside_.isOutside(place, p)) continue;
+    if (++searched > kMostSearched) return false;
     const Nearest other = search_.nearestOf(place, kNone, p, Hit{}, budget_);
     foot.evaluations += other.elements;
+    certain = certain && other.proved;
     if (!other.found()) continue;
     const Held held = heldAt(other);
     const Foot inside = describe(model(), place, held.hit, held.face, p);
@@ -124,9 +128,8 @@ bool Tracer::preferDeepestAround(const Vector3d& p, bool proved, Foot& foot) noe
     foot = inside;
     foot.evaluations = evaluations;
     nearest_ = held;
-    proved = other.proved;
   }
-  return proved;
+  return certain;
 }
 
 /// Returns the nearest foot of all bodies, or a foot at which the probe is deeper inside.
@@ -142,7 +145,7 @@ Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   bool proved = found.proved;
   foot.evaluations = found.elements;
   foot.residual = proved ? 0 : std::max(0.0, foot.distance - found.others);
-  if (model().placements().size() > 1 && !(foot.depth > 0)) proved = preferDeepestAround(p, proved, foot);
+  if (model().placements().size() > 1 && !(foot.depth > 0)) proved = preferDeepestAround(p, foot) && proved;
   foot.status = proved ? FootStatus::kNearest : FootStatus::kDegraded;
   return foot;
 }

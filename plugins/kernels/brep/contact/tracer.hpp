@@ -61,7 +61,7 @@ class Tracer {
   void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;
   bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
-  bool preferDeepestAround(const Eigen::Vector3d& p, bool proved, contact::Foot& foot) noexcept;
+  bool preferDeepestAround(const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.
   const contact::Foot& nearestOnce(const Eigen::Vector3d& p) noexcept;
   bool mayBeThroughGap(double way) const noexcept;

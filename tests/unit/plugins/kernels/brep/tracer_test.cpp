@@ -178,5 +178,58 @@ TEST(Assembly, BodiesThatStayOutsideAreNotSearchedAgain) {
   EXPECT_LT(evaluations, 0.5 * cold_evaluations);
 }
 
+/// Returns 20 brackets around the point (12, 12, 10) mm. It is in the boxes of all of them, 1 to 2 mm outside of their
+/// solids, but 5 mm inside the one of index `inside`.
+Part bracketsAround(std::size_t inside) {
+  Part part = samples::bracket();
+  const Instance first = part.instances[0];
+  part.instances.clear();
+  for (std::size_t i = 0; i < 20; ++i) {
+    part.instances.push_back(first);
+    for (const std::size_t at : {3U, 7U})
+      part.instances[i].pose[at] = i == inside ? 0.007 : 5e-5 * static_cast<double>(i);
+  }
+  return part;
+}
+
+/// However many boxes contain the probe, a foot is told to be the nearest only if all their bodies were looked at.
+TEST(Assembly, ABodyAmongManyIsFeltByAProbeInIt) {
+  constexpr int kEnough = 4;  // ticks that search all of the bodies
+  const Vector3d p(0.012, 0.012, 0.010);
+  for (std::size_t inside = 0; inside < 20; ++inside) {
+    const Model model(bracketsAround(inside));
+    Tracer tracer(model);
+    for (int tick = 0; tick < kEnough; ++tick) {
+      const Foot foot = tracer.nearest(p);
+      if (foot.status == FootStatus::kNearest || tick == kEnough - 1) {
+        EXPECT_NEAR(foot.depth, 0.005, 1e-12) << "tick " << tick << ", inside body " << inside;
+        EXPECT_EQ(foot.status, FootStatus::kNearest) << inside;
+      }
+    }
+  }
+}
+
+/// The body that is nearest may not be found in a short search. Then a foot in another body is not the nearest for
+/// sure.
+TEST(Assembly, AFootIsNotCertainIfOneOfTheSearchesWasNot) {
+  const Model model(bracketsAround(7));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  int certain = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d p = model.bounds().min() +
+                       Vector3d(share(random), share(random), share(random)).cwiseProduct(model.bounds().sizes());
+    Tracer quick(model), thorough(model);
+    const int most = 1 + i % 64;
+    const Foot foot = quick.nearest(p, {most, most});
+    Foot known = thorough.nearest(p);
+    for (int more = 0; more < 3; ++more) known = thorough.nearest(p);
+    if (foot.status != FootStatus::kNearest) continue;
+    ++certain;
+    ASSERT_NEAR(foot.depth, known.depth, 1e-12) << p.transpose();
+  }
+  EXPECT_GT(certain, 0);
+}
+
 }  // namespace
 }  // namespace hapticd::brep
