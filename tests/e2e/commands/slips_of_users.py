@@ -86,6 +86,9 @@ def meshes(folder, ask):
     check("a scale that is no number is told so", code == 2 and '"1mm" is not a number' in err, err)
     code, out, err = ask("import", out_file, "-o", os.path.join(folder, "y.hpart"))
     check("a part is no file to import", code == 2 and "is a part already" in err, err)
+    model = os.path.join(SOURCE, "config", "models", "box.yaml")
+    code, out, err = ask("import", model, "--fit", "0.02", "-o", os.path.join(folder, "cap.yaml"))
+    check("nor is a model file", code == 2 and "is a model file already, whose size and place stay" in err and f"hapticd view {model} shows it" in err, err)
 
 
 def outputs(folder, ask):
