@@ -12,6 +12,7 @@
 
 #include "base/file_ending.hpp"
 #include "base/os.hpp"
+#include "cli/import/file_content.hpp"
 #include "cli/recording/explain_recording.hpp"
 #include "cli/recording/recorded_models.hpp"
 #include "cli/run/view_process.hpp"
@@ -92,14 +93,17 @@ bool isOther(const std::string& file) {
   return std::filesystem::is_regular_file(file, error) && endingOf(file) != ".h5" && !isRecording(file);
 }
 
+int refuse(const std::string& file) {
+  if (const std::string other = misnamed(file); !other.empty()) return fail(kBadInput, other);
+  return fail(kBadInput, file +
+                             ": holds nothing that can be shown, expected a recording or dump (.h5), a part (.hpart), "
+                             "a model file or scene (.yaml, .json), a medial mesh (.ma), CAD (.step, .iges, .brep), a "
+                             "mesh (.obj, .stl, .ply) or patches (.bpt)");
+}
+
 int view(const ViewArguments& options) {
   if (Still::is(options.file)) return viewStill(options);
-  if (isOther(options.file))
-    return fail(kBadInput,
-                options.file +
-                    ": holds nothing that can be shown, expected a recording or dump (.h5), a part "
-                    "(.hpart), a model file or scene (.yaml, .json), a medial mesh (.ma), CAD (.step, .iges, "
-                    ".brep), a mesh (.obj, .stl, .ply) or patches (.bpt)");
+  if (isOther(options.file)) return refuse(options.file);
   if (!options.file.empty()) return viewRecording(options);
   tellOfWaiting(options);
   return fail(kFailed, becomeView(argumentsOf(options)).error());

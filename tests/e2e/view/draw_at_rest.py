@@ -89,6 +89,7 @@ with tempfile.TemporaryDirectory() as folder:
     refused(write(folder, "bad.hpart", "no part"), "bad.hpart")
     refused(os.path.join(folder, "none.hpart"), f"error: {folder}/none.hpart: there is no such file")
     refused(write(folder, "program.py", "print()\n"), "program.py: holds nothing that can be shown, expected a recording or dump (.h5), a part (.hpart), ")
+    refused(write(folder, "cube.txt", CUBE), "rename it to")
     refused(write(folder, "broken.h5", "print()\n"), "broken.h5: is not a recording")
     nowhere = subprocess.run([HAPTICD, "view", models("as1.hpart")], env=dict(environment, TMPDIR="/nowhere"), capture_output=True, text=True, timeout=PATIENCE)
     check("a folder for temporary files that is not there is named", nowhere.returncode == 1 and "TMPDIR: No such file" in nowhere.stderr, nowhere)
