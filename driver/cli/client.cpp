@@ -104,7 +104,9 @@ int endOf(pid_t child) {
 }
 
 /// Starts a daemon and waits until it answers requests.
-Result<pid_t> startDaemon(const ClientArguments& options) {
+/// @param code receives the exit code if there is an error: for a bad scene that of `hapticd run`
+Result<pid_t> startDaemon(const ClientArguments& options, int& code) {
+  code = kFailed;
   constexpr int kTries = 600;
   constexpr useconds_t kPauseUs = 50'000;
   std::string scene = options.scene;
@@ -120,7 +122,10 @@ Result<pid_t> startDaemon(const ClientArguments& options) {
   if (child < 0) return Error{std::string("the daemon cannot be started: ") + std::strerror(errno)};
   for (int i = 0; i < kTries; ++i) {
     if (isRunning(options.name)) return child;
-    if (waitpid(child, nullptr, WNOHANG) == child) return Error{"the daemon ended at once, for the reason above"};
+    if (int status = 0; waitpid(child, &status, WNOHANG) == child) {
+      if (WIFEXITED(status) && WEXITSTATUS(status) == kBadInput) code = kBadInput;
+      return Error{"the daemon ended at once, for the reason above"};
+    }
     usleep(kPauseUs);
   }
   kill(child, SIGTERM);
@@ -130,11 +135,12 @@ Result<pid_t> startDaemon(const ClientArguments& options) {
 }
 
 int runWithDaemon(const ClientArguments& options, const std::vector<std::string>& words) {
-  const auto daemon = startDaemon(options);
-  if (!daemon) return fail(kFailed, daemon.error());
+  int code = 0;
+  const auto daemon = startDaemon(options, code);
+  if (!daemon) return fail(code, daemon.error());
   os::onStopSignal(passOn);
   program = start(words, false);
-  const int code = program > 0 ? endOf(static_cast<pid_t>(program)) : fail(kFailed, std::strerror(errno));
+  code = program > 0 ? endOf(static_cast<pid_t>(program)) : fail(kFailed, std::strerror(errno));
   kill(*daemon, SIGTERM);
   endOf(*daemon);
   return code;

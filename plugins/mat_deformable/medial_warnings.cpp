@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "kernels/dynamics/plausible_mass.hpp"
 #include "traced_shape/document.hpp"
 
 namespace hapticd {
@@ -82,15 +83,14 @@ bool warnOfRadii(const MedialFile& file, const Json& medial, Problems& odd) {
 }
 
 void warnOfMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems& odd) {
-  // [kg/m^3] denser than any metal; [kg] less than this is never reported; [m] a larger body is meant in mm
-  constexpr double kDensest = 25'000, kEasy = 3, kHuge = 5;
+  constexpr double kHuge = 5;  // [m] a larger body is meant in mm
   const std::vector<double>& mass = file.grid ? file.grid->mass : file.mesh->mass;
   const std::size_t points = file.grid ? file.grid->grid.points.size() : file.mesh->mesh.vertices.size();
   const double unit = box.sizes().maxCoeff() > kHuge ? 1e-3 : 1;
   double all = 0;
   for (const double one : mass) all += one;
   if (mass.size() == 1) all *= static_cast<double>(points);
-  if (all > kEasy && all > kDensest * box.volume() * unit * unit * unit)
+  if (all > dynamics::kEasyMass && all > dynamics::kDensest * box.volume() * unit * unit * unit)
     odd.add(medialAt("mass"), written("the points have %.3g kg in all, in a body %.3g m large%s; each value must be in "
                                       "kg: %.3g g is %.3g kg",
                                       all, box.diagonal().norm() * unit, unit < 1 ? " (if its lengths are in mm)" : "",

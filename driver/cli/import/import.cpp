@@ -106,10 +106,12 @@ int importModel(const ImportArguments& options) {
     return fail(kBadInput, options.file +
                                ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of "
                                "which the part was made, or one that a CAD program exports");
-  if (part)
-    return fail(kBadInput, options.file + ": is a part already, as import writes it\n  fix: hapticd import " +
-                               shellWord(options.file) + " --scene SCENE.yaml writes a scene for it, hapticd view " +
-                               shellWord(options.file) + " shows it");
+  const bool model = !options.medial && options.answers.empty() && modelFileOf(options.file) != ModelFile::kNone;
+  if (part || model)
+    return fail(kBadInput, options.file + ": is a " + (part ? "part" : "model file") +
+                               " already, whose size and place stay\n  fix: hapticd import " + shellWord(options.file) +
+                               " --scene SCENE.yaml writes a scene for it, hapticd view " + shellWord(options.file) +
+                               " shows it");
   if (const std::string better = otherCommand(options.file); !better.empty()) return fail(kBadInput, better);
   if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
   if (std::error_code error; !std::filesystem::exists(options.file, error))

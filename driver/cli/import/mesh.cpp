@@ -10,6 +10,7 @@
 #include "base/short_number.hpp"
 #include "cli/support/command.hpp"
 #include "document/json_text.hpp"
+#include "import/unstated_unit.hpp"
 #include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
 
@@ -92,7 +93,7 @@ std::string placedText(const importing::Placement& placement) {
   return text;
 }
 
-void print(const importing::MeshReport& r, const std::string& out) {
+void print(const importing::MeshReport& r, const std::string& out, const importing::Placement& placement) {
   std::printf("%s: %zu triangle%s, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles,
               r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
               r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
@@ -103,6 +104,7 @@ void print(const importing::MeshReport& r, const std::string& out) {
     std::printf("  colours: %s\n",
                 r.coloured == r.triangles ? "of all triangles" : counted(r.coloured, "triangle").c_str());
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
+  printUnit(placement, r.size.maxCoeff());
   warnOfSize(out, r.size.norm());
 }
 
@@ -120,6 +122,11 @@ void warnOfSize(const std::string& out, double size) {
                  "of the imported file) "
                  "right?\n",
                  out.c_str(), size * 1e3);
+}
+
+void printUnit(const importing::Placement& placement, double largest) {
+  if (const std::string line = importing::unstatedUnit(placement, largest); !line.empty())
+    std::printf("  %s\n", line.c_str());
 }
 
 int failLines(int exit_code, const std::string& lines) {
@@ -162,7 +169,7 @@ int importMesh(const MeshImport& options) {
   if (options.json)
     std::printf("%s\n", jsonOf(report, called).c_str());
   else
-    print(report, called);
+    print(report, called, placement);
   return kWorked;
 }
 

@@ -21,6 +21,9 @@ int failLines(int exit_code, const std::string& lines);
 /// [main] Warns if what was imported is larger or smaller than a hand can feel. @param size [m] diagonal of its box
 void warnOfSize(const std::string& out, double size);
 
+/// [main] Says which unit was assumed, unless a size was asked for. @param largest [m] extent of what was imported
+void printUnit(const importing::Placement& placement, double largest);
+
 /// [main] Converts the mesh and prints the report or the error. @return the exit code
 int importMesh(const MeshImport& options);
 

@@ -24,6 +24,7 @@ int writeModel(const BezierModel& model, const PatchImport& options) {
     std::printf("%s: %zu surface%s, %.4g x %.4g x %.4g m%s\n", called.c_str(), model.patches.size(),
                 model.patches.size() == 1 ? "" : "s", size.x(), size.y(), size.z(),
                 model.reversed ? ", outward reversed" : "");
+    printUnit(options.placement, size.maxCoeff());
   }
   warnOfSize(called, size.norm());
   return kWorked;

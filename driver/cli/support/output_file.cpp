@@ -42,32 +42,32 @@ std::string whyNotWritable(const std::string& file) {
 }
 
 const OutputKind& pictureKind() {
-  static const OutputKind kind{"a picture (SVG)", {"<svg", "<?xml"}, "<svg"};
+  static const OutputKind kind{"a picture (SVG)", {"<svg", "<?xml"}, "<svg", true};
   return kind;
 }
 
 const OutputKind& recordingKind() {
-  static const OutputKind kind{"a recording", {"\x89HDF\r\n"}, "hapticd-recording/"};
+  static const OutputKind kind{"a recording", {"\x89HDF\r\n"}, "hapticd-recording/", true};
   return kind;
 }
 
 const OutputKind& reportKind() {
-  static const OutputKind kind{"a report", {"{"}, "\"overruns\""};
+  static const OutputKind kind{"a report", {"{"}, "\"overruns\"", true};
   return kind;
 }
 
 const OutputKind& mcapKind() {
-  static const OutputKind kind{"an MCAP file", {"\x89MCAP"}};
+  static const OutputKind kind{"an MCAP file", {"\x89MCAP"}, {}, true};
   return kind;
 }
 
 const OutputKind& objKind() {
-  static const OutputKind kind{"triangles of ctl geometry (OBJ)", {kObjBeginning}};
+  static const OutputKind kind{"triangles of ctl geometry (OBJ)", {kObjBeginning}, {}, true};
   return kind;
 }
 
 const OutputKind& partKind() {
-  static const OutputKind kind{"a part (.hpart)", {"hapticd-part/"}};
+  static const OutputKind kind{"a part (.hpart)", {"hapticd-part/"}, {}, true};
   return kind;
 }
 
@@ -83,7 +83,9 @@ OutputKind tableKind(std::string_view header) {
 std::string whyNotWritten(const std::string& out, const OutputKind& kind, const Inputs& inputs) {
   namespace fs = std::filesystem;
   std::error_code error;
-  if (out.empty()) return "";
+  if (out.empty() || (out == "-" && !kind.file_only)) return "";
+  if (out == "-")
+    return std::string("-: ") + kind.name + " goes to a file, not to standard output; expected a name, such as ./-";
   for (const auto& [file, what] : inputs)
     if (!file.empty() && fs::equivalent(out, file, error))
       return out + ": is " + what + " itself, expected another file";

@@ -15,6 +15,7 @@ struct OutputKind {
   std::vector<std::string_view> beginnings;  ///< the file must begin with one of these
   /// text that the file must contain within its first 8 KiB; empty for no such condition
   std::string_view within = {};
+  bool file_only = false;  ///< true if it never goes to standard output, so that - is no name for it
 };
 
 const OutputKind& pictureKind();                                       ///< SVG
@@ -32,8 +33,8 @@ OutputKind tableKind(std::string_view header);
 using Inputs = std::vector<std::pair<std::string, const char*>>;
 
 /// [main] Returns why a file must not be written: it is one of the inputs, or it exists and is of another kind. Returns
-/// "" if it may be written. New files, empty files and names that are not regular files (-, devices, pipes) may always
-/// be written.
+/// "" if it may be written. New files, empty files and names that are not regular files (devices, pipes, and - where it
+/// means standard output) may always be written.
 std::string whyNotWritten(const std::string& out, const OutputKind& kind, const Inputs& inputs = {});
 
 /// [main] Returns why a file cannot be written; "" if it can, or if it is "". Leaves no new file behind, in case the

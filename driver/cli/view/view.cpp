@@ -5,11 +5,15 @@
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/file_ending.hpp"
 #include "base/os.hpp"
+#include "cli/import/file_content.hpp"
+#include "cli/recording/explain_recording.hpp"
 #include "cli/recording/recorded_models.hpp"
 #include "cli/run/view_process.hpp"
 #include "cli/support/command.hpp"
@@ -83,8 +87,23 @@ void tellOfWaiting(const ViewArguments& options) {
                options.name.c_str(), control::othersText(socket).c_str(), control::startText(socket).c_str());
 }
 
+/// True for a file that is there, and neither is a recording nor is called one.
+bool isOther(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error) && endingOf(file) != ".h5" && !isRecording(file);
+}
+
+int refuse(const std::string& file) {
+  if (const std::string other = misnamed(file); !other.empty()) return fail(kBadInput, other);
+  return fail(kBadInput, file +
+                             ": holds nothing that can be shown, expected a recording or dump (.h5), a part (.hpart), "
+                             "a model file or scene (.yaml, .json), a medial mesh (.ma), CAD (.step, .iges, .brep), a "
+                             "mesh (.obj, .stl, .ply) or patches (.bpt)");
+}
+
 int view(const ViewArguments& options) {
   if (Still::is(options.file)) return viewStill(options);
+  if (isOther(options.file)) return refuse(options.file);
   if (!options.file.empty()) return viewRecording(options);
   tellOfWaiting(options);
   return fail(kFailed, becomeView(argumentsOf(options)).error());

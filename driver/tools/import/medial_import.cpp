@@ -15,6 +15,8 @@
 #include "import/medial_axis.hpp"
 #include "import/nearest_points.hpp"
 #include "import/progress_line.hpp"
+#include "import/unstated_unit.hpp"
+#include "kernels/dynamics/plausible_mass.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_repair.hpp"
 
@@ -62,6 +64,7 @@ std::string toYaml(const MedialAxis& axis, const MedialImport& options, const st
 /// The mass of a vertex that nobody gave [kg]. A body of many spheres would be heavier than metal with the usual one.
 double usualMass(std::size_t spheres) {
   constexpr double kUsual = 0.01, kMostInAll = 2;  // [kg]
+  static_assert(kMostInAll < dynamics::kEasyMass, "`check` must not warn of what import chose");
   return std::min(kUsual, kMostInAll / static_cast<double>(spheres));
 }
 
@@ -147,9 +150,12 @@ void printFeel(const MedialImport& options) {
 }
 
 /// Warns of a large body, because its file was probably in millimetres.
-void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
+void printSize(const Eigen::AlignedBox3d& box, const MedialImport& options) {
+  const std::string& file = options.file;
   const Vector3d size = box.sizes();
   std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
+  const std::string unit = isMeshFile(file) ? unstatedUnit(options.placement, size.maxCoeff()) : "";
+  if (!unit.empty()) std::printf("  %s\n", unit.c_str());
   std::fflush(stdout);
   if (size.maxCoeff() > kLarge)
     std::fprintf(stderr,
@@ -211,7 +217,7 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
 Result<void> importMedial(const MedialImport& asked, const Triangles& mesh, host::Catalog& catalog) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : mesh.points) box.extend(p);
-  printSize(box, asked.file);
+  printSize(box, asked);
   MedialOptions settings;
   settings.tolerance = asked.tolerance > 0 ? asked.tolerance : kToleranceShare * box.diagonal().norm();
   settings.most_spheres = asked.most_spheres;

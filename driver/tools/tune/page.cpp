@@ -72,6 +72,7 @@ std::string page(const Findings& findings) {
              "<style>body{{font:15px/1.5 Helvetica,Arial,sans-serif;max-width:60em;margin:2em auto;color:#222}}"
              "table{{border-collapse:collapse}}td,th{{padding:.2em .8em;border-bottom:1px solid #ddd;text-align:right}}"
              "svg{{max-width:100%;height:auto}}"
+             ".warning{{white-space:pre-line}}"
              "td:first-child,th:first-child{{text-align:left}}.chosen{{background:#fdecea}}.now{{background:#e8f0fa}}"
              "</style>\n"
              "<h1>Speed against accuracy: {0}</h1>\n<p>{1} settings measured over {2}. {5}Errors are the largest of "
@@ -80,7 +81,7 @@ std::string page(const Findings& findings) {
              escaped(findings.scene), tuning.candidates.size(), escaped(findings.motion),
              escaped(nameOf(findings, tuning.candidates[tuning.chosen])), escaped(reason(findings)),
              stopped.empty() ? "" : "It " + stopped + ". ",
-             none.empty() ? "" : "<p><b>Warning:</b> " + escaped(none) + "</p>\n") +
+             none.empty() ? "" : "<p class=\"warning\"><b>Warning:</b> " + escaped(none) + "</p>\n") +
          picture(findings) + frontTable(findings) + servoTables(findings) + "</html>\n";
 }
 

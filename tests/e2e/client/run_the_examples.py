@@ -153,7 +153,7 @@ def experiment(folder):
     recorded = os.path.join(folder, "trials.h5")
     with Daemon(HAPTICD, folder, "trials", soft, "--record", recorded):
         done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "4", "--seconds",
-                               "2.5", "--out", out], env=environment, input="\n" * 4, capture_output=True, text=True, timeout=200)
+                               "2.5", "--out", out, "--question", "How hard? "], env=environment, input="\n5\n" * 4, capture_output=True, text=True, timeout=200)
     table = list(csv.DictReader(open(os.path.join(out, "trials.csv")))) if done.returncode == 0 else []
     force = {name: [float(row["force_n"]) for row in table if row["scene"].endswith(name)] for name in ("soft.yaml", "hard.yaml")}
     check("experiment.py presents each stimulus equally often", [len(f) for f in force.values()] == [2, 2], (done, table))
@@ -161,7 +161,12 @@ def experiment(folder):
     ticks = list(csv.DictReader(open(os.path.join(out, "trial-002.csv"))))
     told = subprocess.run([HAPTICD, "explain", recorded], capture_output=True, text=True, timeout=60).stdout
     check("the recording has a mark where each trial begins and ends", [line.split(" s  ")[1] for line in told.split("marks\n")[-1].split("\n")[:8]]
-          == [f"trial {i} {what}" for i in (1, 2, 3, 4) for what in ("begins", "ends")], told)
+          == [text for i, row in enumerate(table, 1) for text in (f"trial {i} begins: {os.path.basename(row['scene'])}", f"trial {i} ends")], told)
+    check("each answer stands beside its trial", [row.get("answer") for row in table] == ["5"] * 4, table)
+    before = open(os.path.join(out, "trials.csv")).read() if table else ""
+    again = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "nobody", "--out", out], env=environment,
+                           capture_output=True, text=True, timeout=60)
+    check("the table of a former session stays", again.returncode == 2 and "expected a new folder" in again.stderr and open(os.path.join(out, "trials.csv")).read() == before, again)
     check("a trial has its ticks without a gap", len(ticks) == int(table[1]["ticks"]) > 1000 and ticks[0]["tick"] == table[1]["tick"]
           and all(int(b["tick"]) - int(a["tick"]) == 1 for a, b in zip(ticks, ticks[1:])), table)
 

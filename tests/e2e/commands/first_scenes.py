@@ -154,6 +154,21 @@ def odd_sizes():
     presses(join("hall-2.yaml"))
 
 
+def units():
+    """A mesh states no unit: an import that was not told one says what it took, and what the size would be in others."""
+    inches = write(folder, "inches.stl", stl(box(3, 2, 1.5)))
+    code, out, err = run("import", inches, "-o", join("inches.hpart"))
+    check("a mesh without --scale: what was assumed", code == 0 and "no unit, so metres were assumed: in millimetres it is 3 mm large (--scale 0.001), "
+          "in inches 76.2 mm (--scale 0.0254)" in out, out + err)
+    for chosen in (("--scale", "0.0254"), ("--fit", "0.1")):
+        code, out, err = run("import", inches, "-o", join("inches.hpart"), *chosen)
+        check(f"a mesh with {chosen[0]}: nothing was", code == 0 and "assumed" not in out, out + err)
+    code, out, err = run("import", "--medial", join("egg.obj"), "-o", join("unit.yaml"), "--samples", "1000")
+    check("a soft body without --scale: what was assumed", code == 0 and "in inches 2.54 mm" in out, out + err)
+    code, out, err = run("import", os.path.join(SOURCE, "config", "models", "teapot.bpt"), "-o", "-")
+    check("a model on standard output is nothing else", code == 0 and "assumed" not in out, out[:300] + err)
+
+
 def paths():
     os.makedirs(join("parts", "of mine"))
     os.makedirs(join("scenes"))
@@ -208,6 +223,7 @@ model_files()
 soft_bodies()
 scenes_of_models()
 odd_sizes()
+units()
 paths()
 refusals()
 if MAKE_PARTS:

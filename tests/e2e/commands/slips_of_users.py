@@ -42,7 +42,7 @@ def foreign(folder, ask):
     code, out, err = ask("check", write(folder, "a.h5", b"\x89HDF\r\n\x1a\n"))
     check("a recording is no scene", code == 2 and "a recording (HDF5)" in out + err and "hapticd replay" in out + err, (code, out, err))
     code, out, err = ask("check", write(folder, "a.hpart", b"\3\0\0"))
-    check("a part is no scene", code == 2 and "hapticd part info" in out + err, (code, out, err))
+    check("a part is no scene", code == 2 and "hapticd import" in out + err, (code, out, err))
     code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
     check("a file without an ending is asked for it", code == 2 and "expected the ending .bpt, .stl" in err, (code, out, err))
     code, out, err = ask("import", write(folder, "short.stl", STL[:-1]), "-o", os.path.join(folder, "x.hpart"))
@@ -86,6 +86,9 @@ def meshes(folder, ask):
     check("a scale that is no number is told so", code == 2 and '"1mm" is not a number' in err, err)
     code, out, err = ask("import", out_file, "-o", os.path.join(folder, "y.hpart"))
     check("a part is no file to import", code == 2 and "is a part already" in err, err)
+    model = os.path.join(SOURCE, "config", "models", "box.yaml")
+    code, out, err = ask("import", model, "--fit", "0.02", "-o", os.path.join(folder, "cap.yaml"))
+    check("nor is a model file", code == 2 and "is a model file already, whose size and place stay" in err and f"hapticd view {model} shows it" in err, err)
 
 
 def outputs(folder, ask):
@@ -105,6 +108,7 @@ def outputs(folder, ask):
     check("a folder that is named as a file is not made", code == 2 and "--stream STREAM, with one of ticks" in err
           and not os.path.exists(os.path.join(folder, "t.csv")), (code, out, err))
     others(folder, ask, recording, path, file)
+    standard_output(folder, recording, path, file)
     of_a_recording(folder, ask, recording)
     where_nothing_can_be_written(folder, ask, recording)
     on_a_full_disk(folder, recording, path, file)
@@ -120,6 +124,19 @@ def outputs(folder, ask):
         check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
         ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
         check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def standard_output(folder, recording, path, file):
+    """- is standard output, whatever file has this name; where nothing goes there, it is refused."""
+    write(folder, "-", "something else")
+    here = lambda *words: subprocess.run([HAPTICD, *words], cwd=folder, capture_output=True, text=True, timeout=120)
+    done = here("trace", file, "--probe", path, "--out", "-")
+    check("trace writes to standard output beside a file -", done.returncode == 0 and done.stdout.startswith("t,model,"), done)
+    for words in (("run", file, "--for", "0.1", "--virtual-time", "--report", "-"), ("run", file, "--for", "0.1", "--virtual-time", "--record", "-"),
+                  ("plot", recording, "--out", "-")):
+        done = here(*words)
+        check(f"{words[0]} {words[-2]} -: is no file", done.returncode == 2 and "not to standard output" in done.stderr, done)
+    os.remove(os.path.join(folder, "-"))
 
 
 def where_nothing_can_be_written(folder, ask, recording):

@@ -347,7 +347,7 @@ def command(folder):
         done = run(program)
         check(f"{program}: before a daemon is started for it", done.returncode == 2 and f"{program}: " in done.stderr and "starting one" not in done.stderr, done)
     done = run("--scene", os.path.join(folder, "none.yaml"), "true")
-    check("a scene that is none is told", done.returncode == 1 and "none.yaml" in done.stderr, done)
+    check("a scene that is none is bad input, as for run", done.returncode == 2 and "none.yaml" in done.stderr, done)
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:

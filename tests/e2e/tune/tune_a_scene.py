@@ -146,7 +146,8 @@ with tempfile.TemporaryDirectory() as folder:
     # Nor has one that comes near and touches nothing, which is told.
     with open(f"{folder}/near.csv", "w") as near:
         near.write("t,x,y,z\n" + "".join(f"{i * 1e-3:.3f},{0.06 + i * 1e-6!r},0,0\n" for i in range(1000)))
-    text = run("tune", file, "--probe", f"{folder}/near.csv", "--limit-seconds", "2", "--json", f"{folder}/near.json")
+    text = run("tune", file, "--probe", f"{folder}/near.csv", "--limit-seconds", "2", "--json", f"{folder}/near.json", "--page", f"{folder}/near.html")
+    assert '<p class="warning">' in open(f"{folder}/near.html").read() and ".warning{white-space:pre-line}" in open(f"{folder}/near.html").read()
     touches = json.load(open(f"{folder}/near.json"))["touches"]
     assert "warning: the motion does not touch" in text and "no force is compared" in text, text
     assert [t["ticks"] for t in touches] == [0] and touches[0]["nearest_m"] > 0, touches

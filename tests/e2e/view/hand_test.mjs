@@ -189,22 +189,42 @@ test('the keys alone press the teapot', async () => {
   });
 });
 
+/** Whether each arm is marked as the one that the keys move. */
+const keyed = (page) => page.locator('.of-arm').evaluateAll((all) => all.map((one) => Boolean(one.querySelector('kbd')?.getClientRects().length)));
+
 test('each of two hands is led by itself, by the mouse and by the keys', async () => {
   await guided('two-arms', async (page) => {
+    const marked = (arms, what) => until(async () => String(await keyed(page)) === String(arms), kPatience, what);
+    const colours = () => page.evaluate(() => window.hapticdView.view.probes.map(({tip}) => tip.material.color.getHex()));
+    await marked([true, false], 'a mark of the arm that the keys move');
+    const first = await colours();
+    assert.notEqual(first[0], first[1], 'its tip has a colour of its own');
     await page.keyboard.press('3');
     await press(page, 0.5, 1);
     assert.ok((await force(page, 0)) < 0.3, 'the other one rests');
     await page.screenshot({path: join(pictures, 'two-hands.png')});
     await page.mouse.up();
-    assert.equal(await page.locator('.of-arm').count(), 2, 'a force for each');
-    const speeds = () => page.locator('.of-arm [title="Speed of the tip"]').evaluateAll((all) => all.map((one) => Number(one.value)));
-    assert.equal((await speeds()).length, 2, 'and a speed for each');
+    await marked([false, true], 'the mark at the arm that the mouse has led');
     await page.locator('#canvas').focus();
     await page.keyboard.press('n');
+    await marked([true, false], 'the mark at the next arm');
+    assert.deepEqual(await colours(), first, 'and the colours with it');
     const before = await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1]);
     for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowUp');
     await until(async () => (await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1])) > before + 0.006, kPatience, 'the first arm 10 mm up');
-    assert.ok((await speeds()).every(Number.isFinite), 'both speeds are numbers');
+    assert.deepEqual(await keyed(page), [true, false], 'the mark lasts');
+  });
+});
+
+test('the speed beside the name of an arm is that of this arm', async () => {
+  await guided('two-arms', async (page) => {
+    const speeds = await page.evaluate(() => { // rows in which only the second arm moves, between two frames
+      const {now, readouts} = window.hapticdView, rest = now.arms.map((arm) => arm.now);
+      for (let i = 0; i < 4; ++i) readouts.update(rest.map((row, k) => ({...row, position: [k === 1 ? 0.001 * i : 0, 0, 0]})), now.tick.t + 0.1 * i);
+      return [...document.querySelectorAll('.of-arm')].map((one) => [one.querySelector('dt').title, Number(one.querySelector('[title="Speed of the tip"]').value)]);
+    });
+    const [first, second] = await page.evaluate(() => window.hapticdView.now.arms.map(({name}) => name));
+    assert.deepEqual(speeds, [[first, 0], [second, 10]]); // 1 mm in 0.1 s
   });
 });
 

@@ -41,6 +41,10 @@ test('a recording has a slider, and its rows are those of the file', () => brows
   await until(async () => (await look(page)).t > 3, kPatience, 'three seconds, four times as fast');
   await page.screenshot({path: join(pictures, 'recording.png')});
   assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
+  await page.setViewportSize({width: 390, height: 844}); // a phone
+  const [slider, line] = await page.evaluate(() => ['#seek', '#timeline'].map((id) => document.querySelector(id).getBoundingClientRect().width));
+  assert.ok(slider > 0.8 * line, `a finger has the whole line for the slider: ${slider} of ${line} pixels`);
+  await page.setViewportSize({width: 1000, height: 660});
 }));
 
 test('a recording goes on where it was when the connection is back', () => browser.sandboxed(async (sandbox, open) => {

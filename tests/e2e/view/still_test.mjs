@@ -40,3 +40,10 @@ test('a scene is shown with all its models, and without its arms', () => Browser
   assert.equal(seen.probes, 0);
   assert.ok(seen.models.length >= 1, `${seen.models}`);
 }));
+
+test('what is larger than a metre has its size in metres', () => Browser.alone({width: 900, height: 660}, async (sandbox, show) => {
+  const page = await open(sandbox, show, join(root, 'config', 'models', 'teapot.bpt')); // some metres: its unit is its own
+  const lengths = (await page.locator('#read-size').textContent()).split(' × ').map(Number);
+  assert.equal(await page.locator('#read-size-unit').textContent(), 'm');
+  assert.ok(lengths.every((length) => length > 1 && length < 10), `${lengths}`);
+}));

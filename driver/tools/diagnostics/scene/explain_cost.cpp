@@ -191,7 +191,8 @@ class Costs {
       addPath(index);
     else
       addAsked(index, shape, HSP_R_MOVES, ": integrator", "moves by itself", "it is static, so nothing is integrated");
-    addAsked(index, shape, HSP_R_VELOCITY, ": velocity", "it has damping, viscosity or friction", "it has no damping");
+    addAsked(index, shape, HSP_R_VELOCITY, ": velocity", "it has damping, viscosity or friction",
+             "it does not read that of the tip");
     const bool moves = model.kinematic || (shape.report().flags & HSP_R_MOVES) != 0;
     const bool placed = moves || !model.pose.position.isZero(0) || !model.pose.orientation.vec().isZero(0);
     add(name + ": transform", placed ? where(model.place, key + (model.kinematic ? ".motion" : ".pose")) : "",

@@ -12,6 +12,7 @@
 #include "diagnostics/scene/value_plausibility.hpp"
 #include "host/catalog.hpp"
 #include "host/device_instance.hpp"
+#include "kernels/dynamics/plausible_mass.hpp"
 #include "servo/core/minimum_jerk.hpp"
 #include "servo/velocity/estimator_delay.hpp"
 
@@ -217,15 +218,14 @@ void checkDamper(const GivenModel& given, const scene::Value& value) {
                            value.number, kCalm, value.number * kCalm, most));
 }
 
-/// Warns of a mass that is both denser than any metal and more than a hand moves with ease. Smaller masses are not
-/// judged by density, because a light knob may stand for a whole machine.
+/// Warns of a mass that is both denser than any metal and more than a hand moves with ease.
 void checkMass(const GivenModel& given, const scene::Value& value) {
-  constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], share of the size
-  if (!given.box() || value.number <= kEasy) return;
+  constexpr double kThin = 0.02;  // share of the size
+  if (!given.box() || value.number <= dynamics::kEasyMass) return;
   const bool in_mm = given.size() > kOutOfReach;  // lengths in mm have a warning of their own
   const Vector3d sides = given.box()->sizes().cwiseMax(kThin * given.size()) * (in_mm ? kMilli : 1);
   const double density = value.number / sides.prod();
-  if (density > kDensest)
+  if (density > dynamics::kDensest)
     given.warn({value.id},
                fmt::format("{0:g} kg in a box of {1:.3g} x {2:.3g} x {3:.3g} m{6} is {4:.3g} times as dense as lead; "
                            "the value must be in kg: {0:g} g is {5:g} kg",

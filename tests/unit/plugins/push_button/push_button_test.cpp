@@ -110,7 +110,9 @@ TEST(PushButton, AGentleDetentClicksWithoutAJump) {
 }
 
 TEST(PushButton, AnyCapPressesTheSameAtItsMiddleAndAnyCurveIsTaken) {
-  for (const char* model : {"box.yaml", "sphere.yaml", "cylinder.yaml"}) {
+  const std::pair<const char*, double> caps[] = {
+      {"box.yaml", kTop}, {"sphere.yaml", kTop}, {"cylinder.yaml", kTop}, {"cap.yaml", 0.005}};
+  for (const auto& [model, top] : caps) {
     Button button;
     button.model = model;
     button.k1 = 3000;
@@ -118,9 +120,9 @@ TEST(PushButton, AnyCapPressesTheSameAtItsMiddleAndAnyCurveIsTaken) {
     button.end = 20000;
     PluginUnderTest plugin;
     button.make(plugin);
-    plugin.tick({{0, kTop + 1e-3, 0}});
+    plugin.tick({{0, top + 1e-3, 0}});
     for (int i = 1; i <= 900; ++i) {
-      plugin.tick({{0, kTop - 1e-5 * i, 0}});
+      plugin.tick({{0, top - 1e-5 * i, 0}});
       EXPECT_NEAR(plugin.force().y(), forceOnBranch(button, 1e-5 * i, true), 1e-7) << model << " at " << i;
       EXPECT_LT(std::hypot(plugin.force().x(), plugin.force().z()), 1e-6);
     }

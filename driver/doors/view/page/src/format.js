@@ -19,8 +19,11 @@ export function short(value, digits = 3) {
 /** Returns a whole number with its digits in groups: 1 000 000. */
 export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 
-/** Returns the size of a box [m] in mm: 120 × 60.0 × 40.0. */
-export const sizeText = ({min, max}) => ['x', 'y', 'z'].map((axis) => short((max[axis] - min[axis]) * 1e3)).join(' × ');
+/** Returns the size of a box [m] as text, and its unit: 120 × 60.0 × 40.0 and mm; from a metre on m. */
+export function sizeOf({min, max}) {
+  const size = ['x', 'y', 'z'].map((axis) => max[axis] - min[axis]), large = Math.max(...size) >= 1;
+  return {lengths: size.map((length) => short(large ? length : length * 1e3)).join(' × '), unit: large ? 'm' : 'mm'};
+}
 
 /** Returns a bound as people write it: 1e-12, 0.001, 10000. */
 export const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');

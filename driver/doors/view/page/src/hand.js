@@ -97,6 +97,8 @@ export class Hand {
 
   get possible() { return this.obstacle === ''; }
   get leads() { return this.#lead !== null; }
+  /** The arm that the keys move, where several could be meant; else -1. */
+  get keyed() { return this.possible && this.devices.length > 1 ? this.arm : -1; }
 
   #tipNear(x, y) {
     let best = null;

@@ -5,7 +5,7 @@ import {Connection} from './connection.js';
 import {Drawings} from './drawings.js';
 import {Events, kHeld} from './events.js';
 import {Features} from './features.js';
-import {$, fileName, save, short, sizeText, themeColor} from './format.js';
+import {$, fileName, save, short, sizeOf, themeColor} from './format.js';
 import {greatestForce, Hand, handReach} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -168,7 +168,9 @@ class Page {
   async #drawModels() {
     if (!await this.drawings.draw()) return;
     this.view.measure();
-    $('read-size').value = sizeText(this.view.models.box());
+    const {lengths, unit} = sizeOf(this.view.models.box());
+    $('read-size').value = lengths;
+    $('read-size-unit').textContent = unit;
     this.fresh = true; // the tip has its radius, also in a recording that rests
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
@@ -243,10 +245,18 @@ class Page {
     this.events.look(now);
     this.#showFaults(now.arms.map((arm) => arm.now?.fault ?? 0));
     this.readouts.update(now.arms.map((arm) => arm.now), now.tick.t);
+    this.#markKeyed();
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
     this.#showFoot(contacts);
     this.timeline.at(now.tick.t);
     if (this.hand.leads) $('hint').hidden = true;
+  }
+
+  /** Shows which of several arms the keys move: beside its name and by the colour of its tip. */
+  #markKeyed() {
+    const {keyed} = this.hand;
+    this.readouts.mark(keyed);
+    this.view.probes.forEach((probe, i) => probe.mark(i === keyed));
   }
 
   /** Shows on which instance and face the deepest contact is, if the plugin has names for them, and which arm cannot go

@@ -53,6 +53,7 @@ export class Probe {
     this.ghost.visible = this.tether.visible = this.tip.visible = false;
     this.tipPlace = new Vector3();
     this.showForce = true;
+    this.keyed = false;
     this.ball = 0; // m: radius of the ball that is drawn
     this.resize(kUsualTip);
   }
@@ -71,10 +72,17 @@ export class Probe {
   }
 
   colors({tip, accent, force, link}) {
-    this.tip.material.color.set(tip);
+    this.tipColors = {true: accent, false: tip};
+    this.mark(this.keyed);
     this.linkMaterial.color.set(link);
     for (const part of [this.ghost, this.tether, this.foot, this.normal]) part.material.color.set(accent);
     this.shaft.material.color.set(force);
+  }
+
+  /** Draws the tip in the colour of what is led, or in its own. @param keyed whether the keys move this arm */
+  mark(keyed) {
+    this.keyed = keyed;
+    if (this.tipColors) this.tip.material.color.set(this.tipColors[keyed]);
   }
 
   /** Draws the present state. @param now newest state of the arm @param contacts contacts of this probe @param wish

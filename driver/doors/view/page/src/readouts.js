@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/** The numbers of each arm: its force and the speed of its tip. */
+/** The numbers of each arm: its force and the speed of its tip; and which arm the keys move. */
 import {element, norm, short} from './format.js';
 
 const kSpeedSpan = 0.02; // s between the positions that give a speed
@@ -8,12 +8,15 @@ export class Readouts {
   /** @param root the list that they are put into, before its other entries */
   constructor(root, names) {
     for (const old of root.querySelectorAll('.of-arm')) old.remove();
-    this.arms = names.map(() => ({force: element('output', {title: 'Force'}, '–'), speed: element('output', {title: 'Speed of the tip'}, '–'), before: null}));
-    const entry = (name, ...parts) => element('div', {class: 'of-arm'}, element('dt', {title: name}, name), element('dd', {}, ...parts));
+    this.arms = names.map(() => ({keys: element('kbd', {hidden: true}, 'keys'), force: element('output', {title: 'Force'}, '–'), speed: element('output', {title: 'Speed of the tip'}, '–'), before: null}));
+    const entry = (name, marks, ...parts) => element('div', {class: 'of-arm'}, element('dt', {title: name}, ...marks, name), element('dd', {}, ...parts));
     const force = (arm) => [arm.force, element('small', {}, 'N')], speed = (arm) => [arm.speed, element('small', {}, 'mm/s')];
-    root.prepend(...this.arms.flatMap((arm, i) => names.length > 1 ? [entry(names[i], ...force(arm), ...speed(arm))]
-      : [entry('Force', ...force(arm)), entry('Speed', ...speed(arm))]));
+    root.prepend(...this.arms.flatMap((arm, i) => names.length > 1 ? [entry(names[i], [arm.keys], ...force(arm), ...speed(arm))]
+      : [entry('Force', [], ...force(arm)), entry('Speed', [], ...speed(arm))]));
   }
+
+  /** Marks the arm that the keys move. @param keyed its index, or -1 */
+  mark(keyed) { this.arms.forEach(({keys}, i) => { keys.hidden = i !== keyed; }); }
 
   /** @param rows the newest row of each arm, or undefined */
   update(rows, t) {
