@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Writes numbers for people.
 #pragma once
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -22,6 +23,12 @@ inline std::string withDigits(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
+}
+
+/// [any] Rounds a positive number down to two digits, as a person writes a setting that must not be larger.
+inline double roundedDown(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
 }
 
 }  // namespace hapticd

@@ -13,7 +13,8 @@ namespace {
 constexpr double kSteepest = 0.1;
 
 // [s] Without a sample a finger presses on as it did for kBlind. Then its press fades, else another finger would bear
-// the whole detent at once. After kGone, when the host counts the arm as lost, it presses nothing.
+// the whole detent at once. After kGone, when the host counts the arm as lost, it presses nothing. Once it has samples
+// again, its press comes back as slowly.
 constexpr double kBlind = 0.025, kGone = 0.05;
 
 /// Returns the flags (HSP_OUT_*) of a step of the button. @param button the button after the step
@@ -70,9 +71,10 @@ void PushButton::listPresses(const hsp_step& step) noexcept HSP_RT {
     const bool blind = (probe.flags & HSP_IN_INVALID) != 0;
     finger.blind_for = blind ? finger.blind_for + step.dt_s : 0;
     if (!blind) finger.press = pressOf(touch);
-    const double share = std::clamp((kGone - finger.blind_for) / (kGone - kBlind), 0.0, 1.0);
+    const double change = step.dt_s / (kGone - kBlind);
+    finger.share = std::clamp(finger.share + (finger.blind_for > kBlind ? -change : change), 0.0, 1.0);
     dynamics::ButtonPress press = finger.press;
-    press.stiffness *= share;
+    press.stiffness *= finger.share;
     if (press.stiffness > 0) presses_.push_back(press);
   }
 }

@@ -44,6 +44,7 @@ class PushButton final : public TracedShape {
   struct Finger {
     dynamics::ButtonPress press;  ///< at its last good sample
     double blind_for = 0;         ///< [s] time for which it has had no sample
+    double share = 1;             ///< of its stiffness that moves the button
   };
   void listPresses(const hsp_step& step) noexcept HSP_RT;
   dynamics::ButtonPress pressOf(const Touch& touch) const noexcept HSP_RT;

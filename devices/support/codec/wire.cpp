@@ -19,8 +19,8 @@ constexpr size_t kMaxSteps = 64;
 constexpr size_t kMaxFields = 1024;  ///< of a report: each field is compared with all others
 
 constexpr Name<Exchange> kExchanges[] = {{"stream", Exchange::kStream}, {"poll", Exchange::kPoll}};
-constexpr const char* kWireKeys[] = {"exchange", "rate",  "keep_alive", "watchdog", "framing",
-                                     "startup",  "input", "output",     "endpoints"};
+constexpr const char* kWireKeys[] = {"exchange", "rate",  "watchdog", "framing",
+                                     "startup",  "input", "output",   "endpoints"};
 constexpr const char* kReportKeys[] = {"id", "size", "fields"};
 constexpr const char* kStepKeys[] = {"control", "send", "expect", "tries", "wait", "timeout"};
 constexpr const char* kControlKeys[] = {"type", "request", "value", "index"};
@@ -243,14 +243,12 @@ std::string secondsOf(double time) {
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
   wire.rate = tree.at("rate").number(kLeastRate, kMostRate, "Hz");
-  if (tree.has("keep_alive")) wire.keep_alive = tree.at("keep_alive").number(1e-4, 1, "s");
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
-  if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
-    tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
-        .fail("keep_alive (" + secondsOf(wire.keep_alive) + ") is more than half of watchdog (" +
-              secondsOf(wire.watchdog) +
-              "), so the motors could switch off between commands; expected a keep_alive of " +
-              secondsOf(wire.watchdog / 2) + " or less");
+  const double pause = 1 / wire.rate;  // between two commands
+  if (wire.watchdog > 0 && pause > wire.watchdog / 2)
+    tree.at("watchdog")
+        .fail("is " + secondsOf(wire.watchdog) + ", and commands are sent at wire.rate, each " + secondsOf(pause) +
+              ", so one that comes late could switch the motors off; expected " + secondsOf(2 * pause) + " or more");
 }
 
 void readStartup(const Tree& steps, Wire& wire) {

@@ -79,9 +79,8 @@ struct StartStep {
 /// The description of the wire. The address of the device is not part of it (see wire_arm::Address).
 struct Wire {
   Exchange exchange = Exchange::kStream;
-  double rate = 1000;        ///< [Hz] rate of the arm's reports
-  double keep_alive = 0.01;  ///< [s] longest pause between commands
-  double watchdog = 0;       ///< [s] time without commands until the hardware switches its motors off; 0: never
+  double rate = 1000;   ///< [Hz] rate of the arm's reports, and of commands
+  double watchdog = 0;  ///< [s] time without commands until the hardware switches its motors off; 0: never
   Framing framing;
   std::vector<StartStep> startup;
   Report input, output;

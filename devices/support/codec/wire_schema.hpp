@@ -13,7 +13,6 @@ inline constexpr char kSchemaBegin[] = R"json({
   "properties": {
     "exchange": {"enum": ["stream", "poll"], "default": "stream", "description": "stream: the arm sends by itself; poll: it answers each command"},
     "rate": {"type": "number", "minimum": 50, "maximum": 20000, "description": "reports a second [Hz]"},
-    "keep_alive": {"type": "number", "minimum": 1e-4, "maximum": 1, "default": 0.01, "description": "longest pause between commands [s]"},
     "watchdog": {"type": "number", "minimum": 0, "maximum": 10, "default": 0, "description": "after this time the hardware cuts its motors [s]; 0: it does not"},
     "endpoints": {"type": "object", "additionalProperties": false, "required": ["in", "out"], "properties": {
       "in": {"type": "integer", "minimum": 129, "maximum": 143}, "out": {"type": "integer", "minimum": 1, "maximum": 15}}},

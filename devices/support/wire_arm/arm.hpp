@@ -66,11 +66,12 @@ class Arm : public Device, public Parameters {
     to.buttons = sample_.buttons;
     to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
-    // For kStale no flag is set: the host itself sees that no new sequence number comes. The motors are off by then,
+    // For these two no flag is set: the host itself sees that no new sequence number comes. The motors are off by then,
     // and after a short silence the torque ramps in again.
+    const bool silent = sample_.trouble == Trouble::kStale || sample_.trouble == Trouble::kOld;
     if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
       to.flags |= HDV_S_LOST;
-    else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
+    else if (sample_.trouble != Trouble::kNone && !silent)
       to.flags |= HDV_S_FAULT;
     if (now_ns > sample_.time + kHung && sample_.trouble == Trouble::kNone) to.flags |= HDV_S_FAULT;
     for (size_t i = 0; i < HDV_MAX_JOINTS; ++i) {

@@ -61,6 +61,10 @@ const char* describe(Trouble trouble) noexcept {
       return "reports are never complete; the board stopped while it wrote one: reset it";
     case Trouble::kReset:
       return "the board restarted and lost its zero; find out why it restarted, then calibrate again";
+    case Trouble::kOld:
+      return "reports come, but all are old: their counter or clock does not grow; reset the board, or correct the "
+             "field "
+             "{is: counter} or {is: time} in the device file";
   }
   return "unknown trouble";
 }
@@ -84,6 +88,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   attached_ = true;
   have_raw_ = false;
   turns_ = {};
+  old_ = false;
   reports_ = 0;
   attached_at_ = sent_;
   good_at_ = now;
@@ -125,7 +130,8 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   if (verdict == codec::Verdict::kWrongId) return false;  // another kind of report of the same device
   if (verdict != codec::Verdict::kGood) return reject(verdict), false;
   if (startedAnew(now)) have_raw_ = false;
-  if (have_raw_ && again()) return false;
+  old_ = have_raw_ && again();
+  if (old_) return false;
   last_sequence_ = state_.sequence, last_clock_ = state_.clock;
   if (!follow(now, state_)) return true;
   arrivals_[reports_++ % kRateWindow] = now;
@@ -154,12 +160,14 @@ bool Session::again() const noexcept {
   return state_.has_clock && clock_tells_ && isOld(last_clock_, state_.clock, clock_cycle_, kOldReports / wire_.rate);
 }
 
-/// Returns whether the board has restarted. If so, forgets the positions and the calibration, because the board now
-/// counts from another position.
+/// Returns whether the board has restarted since the last report. If so, forgets the positions and the calibration,
+/// because the board now counts from another position. Counts that it lost before are lost no more, also if it
+/// restarted while it was not attached.
 bool Session::startedAnew(Nanoseconds now) noexcept {
-  const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
+  const bool anew = state_.has_starts && sample_.sequence > 0 && state_.starts != last_starts_;
   last_starts_ = state_.starts;
-  if (!anew) return false;
+  if (anew) lost_ = {};
+  if (!anew || !have_raw_) return false;
   turns_ = {};
   calibrated_ = false;
   raise(now, Trouble::kReset);
@@ -237,6 +245,7 @@ bool Session::watch(Nanoseconds now) noexcept {
   const bool silent = seconds(good_at_, now) > settings_.health.stale;
   if (silent && before != Trouble::kFirmware) {
     Trouble found = Trouble::kStale;
+    if (old_) found = Trouble::kOld;
     if (last_bad_ == codec::Verdict::kWrongSize) found = Trouble::kShort;
     if (last_bad_ == codec::Verdict::kCorrupt) found = Trouble::kCorrupt;
     if (last_bad_ == codec::Verdict::kTorn) found = Trouble::kTorn;

@@ -117,6 +117,7 @@ class Session {
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
   bool clock_tells_ = false;  ///< the arm's clock has a new value in each report
+  bool old_ = false;          ///< the last report was an old one
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

@@ -13,13 +13,14 @@ enum class Trouble : uint8_t {
   kFirmware,   ///< reports name another firmware version than the device file
   kShort,      ///< reports have a wrong size
   kCorrupt,    ///< reports have wrong marks, checksums or numbers
-  kStale,      ///< no report came, or the same one came again and again
+  kStale,      ///< no report came
   kSlow,       ///< reports come more slowly than the device file says
   kJump,       ///< a joint moved faster than HealthLimits::max_speed, so its encoder lost counts
   kHardware,   ///< the device reports a fault
   kAbsent,     ///< no board answers on the bus
   kTorn,       ///< every report is incomplete, because the board stopped while it wrote one
   kReset,      ///< the device restarted and forgot its positions
+  kOld,        ///< the same reports come again and again, or their number does not grow
 };
 
 /// Returns a text for a trouble: what failed, and how to fix it.

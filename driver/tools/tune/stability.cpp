@@ -20,12 +20,6 @@ std::string text(double value) {
   return withDigits(value, 4);
 }
 
-/// Rounds down to two digits, as a person would write a setting.
-double roundedDown(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::floor(value / unit) * unit;
-}
-
 int windowOf(const scene::Velocity& velocity) {
   return velocity.estimator == "window" ? static_cast<int>(velocity.parameter) : 1;
 }

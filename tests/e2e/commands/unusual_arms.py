@@ -222,8 +222,8 @@ TOGETHER = [
 ]
 CLOCK = WIRED.replace("        - {is: button", "        - {is: time, at: 9, type: u8, scale: 1}\n        - {is: button")
 TOGETHER += [
-    (CLOCK, {"rate: 1000": "rate: 1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"},
-     {"wire.rate": "1 kHz is 1000 Hz", "wire.keep_alive": "5 ms is 0.005 s", "wire.input.fields[4].scale": "clock is 1 s, and a report comes every 0.001 s"}),
+    (CLOCK, {"rate: 1000": "rate: 1", "watchdog: 0.02": "watchdog: 20"},
+     {"wire.rate": "1 kHz is 1000 Hz", "wire.watchdog": "20 ms is 0.02 s", "wire.input.fields[4].scale": "clock is 1 s, and a report comes every 0.001 s"}),
     (WIRED, {"type: u16, method: crc16-modbus, from: 0, to: 10": "type: u61, method: crc16-modbus, from: 4, to: 10"},
      {"wire.input.fields[5].type": "expected u16 for crc16-modbus", "wire.input.fields[5].to": "leaves out counter, position 1"}),
     (WIRED, {"    output:": "    ouput:", SENT.format(2, 2): SENT.format(2, 2).replace("2.0e-5", "2.0e-2")},
@@ -296,7 +296,7 @@ def refused(folder):
         done = hapticd("check", file)
         check(f"refused: {key}: {word.strip()}", done.returncode == 2 and f"{place}: {key}: " in done.stdout and word in done.stdout, done.stdout)
     # A scene tells all of it, too, at the places there.
-    file, _ = written(os.path.join(folder, "two.yaml"), WIRED, {"rate: 1000": "rate: |1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"})
+    file, _ = written(os.path.join(folder, "two.yaml"), WIRED, {"rate: 1000": "rate: |1", "watchdog: 0.02": "watchdog: 20"})
     scene = os.path.join(folder, "scene.yaml")
     with open(scene, "w") as out:
         out.write(f"hapticd: 1\ndevice: two.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n")

@@ -49,6 +49,7 @@ class EnergyAccount {
   double given_ = 0, given_by_all_ = 0;
   Push last_;               // of the last step
   double last_stored_ = 0;  // [J] that it could give back at most
+  bool met_ = false;        // last_ is the push of some step before
   bool known_ = false;      // last_ is the push of the last step
   bool changed_ = false;    // a parameter was set since the last step
 };

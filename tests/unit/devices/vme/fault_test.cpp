@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Each, VmeFaults,
                                            Case{"corrupt", VmeFault::kCorrupt, Trouble::kCorrupt},
                                            Case{"protocol", VmeFault::kProtocol, Trouble::kFirmware},
                                            Case{"hydraulics", VmeFault::kHydraulics, Trouble::kHardware},
-                                           Case{"in_turn", VmeFault::kInTurn, Trouble::kStale},
+                                           Case{"in_turn", VmeFault::kInTurn, Trouble::kOld},
                                            Case{"half_rate", VmeFault::kHalfRate, Trouble::kSlow},
                                            Case{"absent", VmeFault::kAbsent, Trouble::kAbsent}),
                          [](const auto& param) { return param.param.name; });

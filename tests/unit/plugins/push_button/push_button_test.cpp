@@ -205,8 +205,9 @@ TEST(PushButton, AnArmThatIsGoneDoesNotLetGoOfWhatAnotherPresses) {
   EXPECT_EQ(plugin.position().y(), pressed) << "one sample was lost";
 }
 
-/// Two fingers share a detent. As one arm is lost, the other finger comes to bear all of it, and not at once.
-TEST(PushButton, AnArmThatIsGoneLeavesItsShareToTheOtherSlowly) {
+/// Two fingers share a detent. As one arm is lost, the other finger comes to bear all of it, and not at once. When the
+/// arm is back, the other finger is not let go at once, either.
+TEST(PushButton, AnArmThatIsGoneLeavesItsShareToTheOtherSlowlyAndTakesItBackSlowly) {
   const Button button;
   PluginUnderTest plugin;
   button.make(plugin, 2);
@@ -216,14 +217,23 @@ TEST(PushButton, AnArmThatIsGoneLeavesItsShareToTheOtherSlowly) {
   const double shared = plugin.force(1).y();
   plugin.own_flags = {HSP_IN_INVALID, 0};
   double last = shared, most = 0;
-  for (int i = 0; i < 100; ++i) {
-    plugin.tick(fingers);
-    most = std::max(most, std::abs(plugin.force(1).y() - last));
-    last = plugin.force(1).y();
-  }
-  EXPECT_NEAR(last, forceOnBranch(button, 0.002, true), 1e-9) << "alone";
-  EXPECT_GT(last, shared + 0.5);
-  EXPECT_LT(most, 0.1 * (last - shared)) << "in one tick";
+  const auto press = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      plugin.tick(fingers);
+      most = std::max(most, std::abs(plugin.force(1).y() - last));
+      last = plugin.force(1).y();
+    }
+  };
+  press(100);
+  const double alone = last;
+  EXPECT_NEAR(alone, forceOnBranch(button, 0.002, true), 1e-9);
+  EXPECT_GT(alone, shared + 0.5);
+  EXPECT_LT(most, 0.1 * (alone - shared)) << "in one tick, as it leaves";
+  most = 0;
+  plugin.own_flags = {0, 0};
+  press(100);
+  EXPECT_NEAR(last, shared, 1e-9);
+  EXPECT_LT(most, 0.1 * (alone - shared)) << "in one tick, as it comes back";
 }
 
 TEST(PushButton, EnergyOverAPressIsNeverGained) {

@@ -162,6 +162,19 @@ TEST(Wire, AWatchdogThatIsSlowIsNoneForAHand) {
   EXPECT_FALSE(cutsSoon("0"));
 }
 
+TEST(Wire, AWatchdogThatIsFasterThanTheCommandsIsRefused) {
+  const auto times = [](const std::string& given) { return changed("\"rate\":1000", given); };
+  EXPECT_NO_THROW(readWire(times(R"("rate":1000,"watchdog":0.002)"), 1));
+  EXPECT_NO_THROW(readWire(times(R"("rate":50,"watchdog":0.04)"), 1));
+  try {
+    (void)readWire(times(R"("rate":50,"watchdog":0.03)"), 1);
+    ADD_FAILURE() << "a command each 20 ms";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("wire.watchdog: is 0.03 s"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("expected 0.04 s or more"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Wire, NeighboursInOneByteAreNoOverlap) {
   const std::string twelve = R"("at":1,"type":"i12")", big = R"("at":1,"type":"i12","endian":"big")";
   const std::string low = R"({"is":"button","button":1,"at":2,"type":"u8","bit":3})",

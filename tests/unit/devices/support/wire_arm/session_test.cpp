@@ -115,17 +115,23 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"corrupt", Trouble::kCorrupt, [](auto& b) { return b[12] ^= 0x40, true; }},
                       Fault{"firmware", Trouble::kFirmware, [](auto& b) { return b[0] = 2, true; }},
                       Fault{"half_rate", Trouble::kSlow, [](auto&) { return ++g_count % 2 == 0; }},
-                      Fault{"repeated", Trouble::kStale,
+                      Fault{"repeated", Trouble::kOld,
                             [](auto& b) {
                               emulator::BoardState same;
                               same.sequence = 9;
                               return b = same.bytes(), true;
                             }},
-                      Fault{"alternating", Trouble::kStale,  // a board that is stuck between its two buffers
+                      Fault{"alternating", Trouble::kOld,  // a board that is stuck between its two buffers
                             [](auto& b) {
                               emulator::BoardState buffer;
                               buffer.sequence = static_cast<uint16_t>(40000 + g_count++ % 2);
                               return b = buffer.bytes(), true;
+                            }},
+                      Fault{"counts_down", Trouble::kOld,
+                            [](auto& b) {
+                              emulator::BoardState down;
+                              down.sequence = static_cast<uint16_t>(60000 - g_count++);
+                              return b = down.bytes(), true;
                             }},
                       Fault{"hardware", Trouble::kHardware,
                             [](auto& b) {
@@ -198,6 +204,37 @@ TEST(Session, AnArmThatFindsItsZeroAndLosesCountsMustFindItAnew) {
   rig.board.state = 1, rig.board.counts[1] -= 20000;
   rig.run(0.5);
   EXPECT_TRUE(rig.pushes()) << describe(rig.session_.trouble());
+}
+
+/// A board that counts its starts, finds its zero by itself, and loses counts. Then it restarts, while it is attached
+/// or while its cable is out.
+TEST(Session, AnArmThatRestartsHasLostNoCounts) {
+  const auto wire = codec::readWire(
+      R"({"rate":1000,"input":{"size":5,"fields":[{"is":"position","joint":1,"at":0,"type":"i16","scale":0.001},)"
+      R"({"is":"starts","at":2,"type":"u8"},{"is":"calibrated","at":3,"type":"u8"},)"
+      R"({"is":"counter","at":4,"type":"u8"}]},)"
+      R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.001}]}})",
+      1);
+  for (const bool cable : {false, true}) {
+    SessionSettings settings = Rig::settings(Calibration::kDevice);
+    settings.joints = 1;
+    Session session(wire, settings);
+    Nanoseconds now = kMs;
+    uint8_t counter = 0;
+    const auto run = [&](uint8_t position, uint8_t starts) {
+      for (int i = 0; i < 500; ++i) {
+        const std::array<uint8_t, 5> report{0, position, starts, 1, ++counter};
+        session.receive(now += kMs, report);
+        session.watch(now);
+      }
+      return session.trouble();
+    };
+    session.attach(now, {}, false);
+    EXPECT_EQ(run(0, 1), Trouble::kNone);
+    EXPECT_EQ(run(8, 1), Trouble::kJump) << "2 rad in a millisecond";
+    if (cable) session.lose(now, Trouble::kUnplugged), session.attach(now, {}, false);
+    EXPECT_EQ(run(8, 2), Trouble::kNone) << cable;
+  }
 }
 
 TEST(Session, AnArmMayJumpAsItFindsItsZero) {
@@ -293,7 +330,7 @@ Trouble stopped(const char* scale, const char* type = "u16") {
 }
 
 TEST(Session, AClockThatStandsStillIsTheSameReportAgain) {
-  EXPECT_EQ(stopped("0.0001"), Trouble::kStale);
+  EXPECT_EQ(stopped("0.0001"), Trouble::kOld);
   EXPECT_EQ(stopped("0.001"), Trouble::kNone) << "so coarse that two good reports may have the same time";
   EXPECT_EQ(stopped("0.0001", "u4"), Trouble::kNone) << "so narrow that it wraps from report to report";
 }

@@ -94,6 +94,23 @@ TEST(EnergyAccount, AWrongDepthAfterALostSampleHidesNoMoreThanAnArmPutsIn) {
   EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven);
 }
 
+/// Nor are many: an arm that loses a sample now and then must not hide for ever what goes along with the hand.
+TEST(EnergyAccount, LostSamplesAgainAndAgainHideNoMoreThanTheWayThatNobodySaw) {
+  for (const bool surface : {true, false}) {
+    EnergyAccount account;
+    double x = 0, given = 0;
+    bool found = false;
+    for (int i = 0; i < 20'000 && !found; ++i) {
+      const int way = i / 60 % 2 == 0 ? 1 : -1;
+      if (i % 100 == 0) account.forgetPush();
+      found = account.step({{8.0 * way, 0, 0}, {x += 1e-3 * way, 0, 0}, 1000, surface}, kTick, 0, 8);
+      given += 8e-3;
+    }
+    EXPECT_TRUE(found) << surface;
+    EXPECT_LT(given, 3 * 8 * EnergyAccount::kWay) << surface;
+  }
+}
+
 TEST(EnergyAccount, AProbeThatJumpedInsideMayBePushedOut) {
   Book book;
   for (int turn = 0; turn < 20; ++turn) {
@@ -155,6 +172,20 @@ TEST(EnergyAccount, AForceThatGoesAlongWithTheHandIsFoundOut) {
   }
   EXPECT_TRUE(found);
   EXPECT_LT(given, 1.5 * FieldBook::kForce * EnergyAccount::kWay);
+}
+
+/// It rests in each other tick, so it gives half as much.
+TEST(EnergyAccount, AForceThatGoesAlongWithTheHandInEachOtherTickIsFoundOut) {
+  FieldBook book;
+  double x = 0, given = 0;
+  bool found = false;
+  for (int i = 0; i < 6000 && !found; ++i) {
+    const int way = i / 60 % 2 == 0 ? 1 : -1;
+    given += i % 2 == 0 ? 8e-3 : 0;
+    found = book.step(x += 1e-3 * way, i % 2 == 0 ? 8 * way : 0);
+  }
+  EXPECT_TRUE(found);
+  EXPECT_LT(given, 2 * FieldBook::kForce * EnergyAccount::kWay);
 }
 
 /// A program that sets a parameter in each tick may make a surface give as much, and no more.
