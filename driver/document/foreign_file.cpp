@@ -33,11 +33,11 @@ constexpr std::string_view kRecording = "\x89HDF";  ///< the first bytes of an H
 
 std::string foreignFile(std::string_view text, const std::string& file) {
   const std::string ending = endingOf(file);
-  const std::string as_in = ", as in the scene that hapticd import " + shellWord(file) + " --scene SCENE.yaml writes";
+  const std::string command = "; to write such a scene, run: hapticd import " + shellWord(file) + " --scene SCENE.yaml";
   if (ending == ".ma" && !text.empty())
-    return "a soft body (medial mesh), expected YAML: use it as the geometry of mat_deformable" + as_in;
+    return "a soft body (medial mesh), expected YAML: use it as the geometry of mat_deformable" + command;
   if (ending == ".hpart")
-    return "a part, expected YAML: use it as the geometry of nurbs_rigid" + as_in + " (for a soft body use a .ma file)";
+    return "a part, expected YAML: use it as the geometry of nurbs_rigid (for a soft body use a .ma file)" + command;
   if (text.substr(0, kRecording.size()) == kRecording)
     return "a recording (HDF5), expected YAML: to run it again, use hapticd replay " + shellWord(file) +
            "; to read what happened, hapticd explain; to draw it, hapticd plot; to look at it, hapticd view";

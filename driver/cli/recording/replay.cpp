@@ -14,9 +14,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/recording/replayed_forces.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/guarded_command.hpp"
 #include "cli/support/open_end.hpp"
+#include "cli/support/output_file.hpp"
 #include "cli/support/tick_watch.hpp"
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
@@ -34,6 +36,7 @@ using Json = nlohmann::ordered_json;
 struct ReplayArguments {
   std::string file;
   std::vector<std::string> changes;
+  std::string csv;
   bool json = false;
 };
 
@@ -206,7 +209,27 @@ int printAsJson(const servo::ReplayOutcome& outcome) {
   return verdictOf(outcome);
 }
 
+/// Replays, and writes the table that was asked for.
+Result<servo::ReplayOutcome> replayInto(const std::string& csv, servo::Replay& again, const record::Recording& of) {
+  if (csv.empty()) return again.run();
+  const auto table = ReplayedForces::open(csv, *of.stream("ticks"));
+  if (!table) return Error{table.error()};
+  servo::ReplayOutcome outcome =
+      again.run([&](const std::byte* recorded, const std::byte* replayed) { (*table)->write(recorded, replayed); });
+  if (auto whole = (*table)->close(); !whole) return Error{whole.error()};
+  return outcome;
+}
+
+/// Returns why the table must not be written, or "".
+std::string wrongTable(const ReplayArguments& options) {
+  OutputKind kind = tableKind(ReplayedForces::kFirstColumns);
+  kind.file_only = true;  // standard output has the outcome
+  const std::string kept = whyNotWritten(options.csv, kind, {{options.file, "the recording"}});
+  return kept.empty() ? whyNotWritable(options.csv) : kept;
+}
+
 int replay(const ReplayArguments& options) {
+  if (const std::string wrong = wrongTable(options); !wrong.empty()) return fail(kBadInput, wrong);
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   auto run = servo::readAbout((*recording)->aboutJson());
@@ -225,7 +248,9 @@ int replay(const ReplayArguments& options) {
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again)
     return fail(kBadInput, options.file + ": " + again.error() + (damage.empty() ? "" : ", because " + damage));
-  servo::ReplayOutcome outcome = (*again)->run();
+  auto replayed = replayInto(options.csv, **again, **recording);
+  if (!replayed) return fail(kFailed, replayed.error());
+  servo::ReplayOutcome outcome = *replayed;
   if (auto same = (*recording)->unchanged(); !same) return fail(kFailed, same.error());
   if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
   const int code = options.json ? printAsJson(outcome) : print(outcome);
@@ -239,12 +264,15 @@ void addReplay(const Command& app, int& exit_code) {
   const Command command = app.addSubcommand("replay", "Run a recording again and compare every force to the last bit.");
   command.addOption("file", options->file, "recording made by `hapticd run --record`").required();
   command.addOption("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command.addOption("--csv", options->csv,
+                    "write depth and sent force of each tick, recorded and replayed, to this table [m, N]");
   command.addFlag("--json", options->json, "print the outcome as JSON");
   command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
       "the same\nas far as the run could be replayed: a replay ends where a model was added that cannot be built, or "
       "where the file is damaged.\n\nExample:\n  "
-      "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
+      "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5\n  hapticd replay "
+      "run.h5 --set teapot.stiffness=900 --csv both.csv");
   setGuardedCallback(command, exit_code, [options] { return replay(*options); });
 }
 

@@ -71,6 +71,7 @@ int viewStill(const ViewArguments& options) {
   const auto still = Still::of(options.file, options.scale, exit_code);
   if (!still) return exit_code;
   if (stopped != 0) return kWorked;
+  std::fflush(stdout);  // what the import said, before the page is served
   std::fprintf(stderr, "%s is shown at rest; to feel it: %s\n", options.file.c_str(), still->command().c_str());
   ViewArguments shown = options;
   shown.file = still->recording();

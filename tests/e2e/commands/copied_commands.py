@@ -63,7 +63,7 @@ def plugins(folder):
 def models(folder):
     shutil.copy(os.path.join(SOURCE, "config", "models", "as1.hpart"), os.path.join(work, folder, "a part's.hpart"))
     part = os.path.join(folder, "a part's.hpart")
-    tried("a part in place of a scene", ["run", part], "hapticd part info")
+    tried("a part in place of a scene", ["run", part], "hapticd import", replaced=(("SCENE.yaml", "made.yaml"),))
     tried("an unknown feature", ["part", "info", part, "--feature", "none"], "hapticd part info", replaced=((" says which features each instance has", ""),))
     scene = os.path.join(folder, "a scene's.yaml")
     tried("a scene for a part", ["import", part, "--scene", scene], "hapticd check")

@@ -28,6 +28,27 @@ def replayIsExact(folder, scene, seconds="1"):
     return file
 
 
+def bothForcesAreWritten(folder, recording):
+    """`replay --csv`: each tick as it was, and as it is with the other parameter. Without friction a wall that is half as stiff pushes half as much."""
+    table, ticks = os.path.join(folder, "both.csv"), os.path.join(folder, "ticks.csv")
+    hapticd("export", recording, "--csv", ticks, "--stream", "ticks")
+    then = list(csv.DictReader(open(ticks)))
+    code, told = hapticd("replay", recording, "--csv", table)
+    same = list(csv.DictReader(open(table))) if code == 0 else []
+    names = ["depth", "arm0_sent_fx", "arm0_sent_fy", "arm0_sent_fz"]
+    check("--csv has each tick as it was", [[row["tick"], row["t"], *(row[f"{name}_recorded"] for name in names)] for row in same]
+          == [[row["tick"], row["t"], *(row[name] for name in names)] for row in then] and same, told)
+    check("and the same again where nothing was changed", all(row[f"{name}_recorded"] == row[f"{name}_replayed"] for row in same for name in names))
+    code, told = hapticd("replay", recording, "--set", "teapot.stiffness=400", "--set", "teapot.damping=0", "--csv", table)
+    force = lambda row, which: sum(float(row[f"arm0_sent_f{axis}_{which}"]) ** 2 for axis in "xyz") ** 0.5
+    rows = [row for row in csv.DictReader(open(table)) if float(row["depth_recorded"]) > 1e-3 and 0.8 < float(row["t"]) < 0.95]  # no ramp
+    off = [abs(force(row, "replayed") / (400 * float(row["depth_replayed"])) - 1) for row in rows]
+    check("a change is beside it", code == 1 and len(rows) > 50 and max(off) < 1e-6, (told, len(rows), max(off, default=0)))
+    for wrong in (recording, "-", os.path.join(folder, "no", "folder.csv")):
+        code, told = hapticd("replay", recording, "--csv", wrong)
+        check(f"--csv {os.path.basename(wrong)} is bad input", code == 2 and "error: " in told, told)
+
+
 def arrivalsAt(ticks, there):
     """The ticks in which a joint comes to an end where it was not for the last 50 ms. One that begins there has not come."""
     last, found = None, []
@@ -223,6 +244,7 @@ with tempfile.TemporaryDirectory() as scratch:
     check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
+    bothForcesAreWritten(scratch, teapot)
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
     ordersAreTold(scratch, environment)
     aStopIsTold(scratch, environment)

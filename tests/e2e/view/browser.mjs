@@ -98,6 +98,7 @@ export function look(page) {
     return {
       frames: view.frames, tick: now.tick.tick, t: now.tick.t, depth: now.tick.depth,
       tips: view.probes.map((probe, i) => {
+        if (!now.arms[i].now) return null; // a seek has just taken its row away
         const m = probe.tip.matrixWorld.elements;
         return {drawn: project(m[12], m[13], m[14]), row: project(...place(i)), visible: probe.tip.visible,
           sent: now.arms[i].now.sent, arrow: probe.shaft.visible, head: probe.head.position.toArray(), at: probe.tipPlace.toArray()};

@@ -49,6 +49,8 @@ def shows(file, models, command, *options):
         if "token=" in line:
             break
     check(f"{name}: a page is served", lines and "token=" in lines[-1], lines)
+    if name.endswith((".obj", ".bpt")):
+        check(f"{name}: which unit was assumed is said unless one is given", any("states no unit" in line for line in lines) == (not options), lines)
     check(f"{name}: no temporary file is named", "hapticd-still" not in "".join(lines), lines)
     servers = glob.glob(os.path.join(folder, "hapticd-view-*", "models.sock"))
     listed = [model["name"] for model in ask(servers[0], {"do": "list"})["models"]] if servers else []

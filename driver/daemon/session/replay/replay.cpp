@@ -220,6 +220,7 @@ class Replay::Player final : public Clock {
     if (ring_.copy(stream, row, 1, now.data()) != 1) return;
     const std::byte* then = recorded_[stream]->row(row);
     if (stream == kTicks) compareForces(then, now.data());
+    if (stream == kTicks && replay_.each_) replay_.each_(then, now.data());
     if (outcome.first) return;
     for (const Column& column : spec.layout.columns()) {
       if (measured(column.name)) continue;
@@ -342,7 +343,8 @@ void Replay::buildLater(const host::Services::Log& log) {
   later_.build(*recording_.stream("orders"), run_.later, *world_, log);
 }
 
-ReplayOutcome Replay::run() {
+ReplayOutcome Replay::run(const EachTick& each) {
+  each_ = each;
   const Nanoseconds start = player_->now();
   for (const auto& arm : arms_)
     if (auto started = arm->start(start, run_.scene.servo.gravity); !started) {

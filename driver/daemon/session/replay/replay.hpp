@@ -3,6 +3,7 @@
 /// and times. Every result is compared with the recorded one, bit by bit.
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +42,10 @@ class Replay {
                                                  const host::Services::Log& log);
   ~Replay();
 
-  ReplayOutcome run();  ///< [main] call once
+  /// Called between two ticks with the rows of `ticks`: the recorded one, and what the replay gives.
+  using EachTick = std::function<void(const std::byte* recorded, const std::byte* replayed)>;
+
+  ReplayOutcome run(const EachTick& each = {});  ///< [main] call once
 
  private:
   class Player;
@@ -60,6 +64,7 @@ class Replay {
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<Player> player_;
   std::unique_ptr<Loop> loop_;
+  EachTick each_;
 };
 
 }  // namespace hapticd::servo

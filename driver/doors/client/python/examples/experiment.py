@@ -6,10 +6,12 @@
     ./experiment.py soft.yaml hard.yaml --trials 20 --seed 7 --out participant-07 --question 'How hard, 1 to 7? '
 
 Enter begins a trial: the scene is loaded while the hand is outside of its models, and then felt for some seconds. The
-scenes may differ in anything but their devices. `trials.csv` has a row per trial with its first tick, its largest force
-[N] and depth [m], and the answer; `trial-001.csv` has the ticks, in SI units and the world frame. The recording has a mark
-where a trial of which scene begins, and where it ends (`hapticd explain session.h5`, column `text` of `marks`). This program pushes on nobody: if it crashes, the last scene
-stays, and the daemon's limits hold. Ctrl-C ends it between two rows.
+scenes may differ in anything but their devices. `trials.csv` has a row per trial: its first tick, the largest force [N]
+and depth [m], and the answer. `trial-001.csv` has the ticks, in SI units and the world frame. The recording has marks
+where a trial begins, with its scene, and where it ends (`hapticd explain session.h5`, column `text` of `marks`).
+
+This program pushes on nobody: if it crashes, the last scene stays, and the daemon's limits hold. Ctrl-C ends it between
+two rows.
 """
 import argparse
 import csv
