@@ -57,6 +57,7 @@ record::LimitReport limitsOf(const servo::Runner& runner, size_t arm) {
                              .sent_max_n = sent.largest,
                              .faults = limiter.faults(),
                              .fault_ticks = sent.fault_ticks,
+                             .swing_hz = runner.telemetry().swing(arm).fastest(),
                              .any = limiter.clips().any,
                              .ticks = {}};
   for (size_t i = 0; i < servo::kLimitCount; ++i)

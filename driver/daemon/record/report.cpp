@@ -184,6 +184,15 @@ std::string faultTimeText(const LimitReport& device, const RunReport& report) {
       device.device, device.faults, seconds);
 }
 
+/// Reports a tip that swung as no hand moves it. Ridges over which a hand strokes fast may look the same.
+std::string swingText(const LimitReport& device, const RunReport& report) {
+  if (device.swing_hz == 0) return "";
+  return fmt::format(
+      "swing of {}: its tip swung {:.0f} times a second, by more than 1 mm; unless a shape did this, the arm is not "
+      "stable at {:.0f} Hz: take a higher rate, less stiffness, or with admittance more of its mass or damping\n",
+      device.device, device.swing_hz, report.rate_hz);
+}
+
 /// Reports joints at a stop: a hand that leans on a stop feels a force that does not come from the scene.
 std::string stopText(const StopReport& stop, const RunReport& report) {
   constexpr double kTold = 0.1;  // [s] shorter times at a stop are bumps
@@ -254,6 +263,7 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
     Json& ticks = json["limits"][device.device];
     ticks = {{"clipped_ticks", device.any},
              {"sent_max_n", device.sent_max_n},
+             {"swing_hz", device.swing_hz},
              {"faults", device.faults},
              {"fault_ticks", device.fault_ticks}};
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
@@ -292,6 +302,7 @@ std::string summary(const RunReport& report) {
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
   for (const LimitReport& device : report.limits) text += faultTimeText(device, report);
+  for (const LimitReport& device : report.limits) text += swingText(device, report);
   for (const StopReport& stop : report.stops) text += stopText(stop, report);
   for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);
   for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";

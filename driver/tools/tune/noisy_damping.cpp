@@ -17,11 +17,18 @@
 namespace hapticd::tune {
 namespace {
 
+constexpr double kPress = 4;              ///< [N] of a hand that touches a wall
 constexpr double kKnock = 0.5;            ///< [N] a force of some ticks that a hand feels as a knock
 constexpr double kLatestEstimate = 0.01;  ///< [s] no longer delay of an estimate is advised
 
 double sampleRate(const scene::Scene& scene, const hdv_info& info) {
   return info.rate_hz > 0 ? std::min(info.rate_hz, scene.servo.rate) : scene.servo.rate;
+}
+
+/// Returns how much of a short knock the hand feels: it moves the hand together with the mass of the arm.
+double feltShare(const hdv_info& info) {
+  constexpr double kHand = 0.2;  // [kg] of a hand that holds the arm
+  return kHand / (kHand + std::max(info.mass_kg, 0.0));
 }
 
 /// Returns the largest speed [m/s] that the estimator sees when the position grows by one count and stays there.
@@ -38,7 +45,6 @@ double speedOfOneCount(servo::VelocityEstimator estimator, double rate, double c
 /// Returns by how much the damping of a wall has grown where it pushes as a hand does; 1 if it does not grow. The
 /// damping of these walls grows as their force does.
 double growthOf(const scene::Model& model, std::string_view key) {
-  constexpr double kPress = 3;          // [N] of a hand that touches
   constexpr double kDeepest = 0.1;      // [m] nobody presses deeper
   constexpr double kDepthScale = 1e-3;  // [m] if the scene gives none
   const bool grows = model.plugin == "nurbs_rigid" ? key == "damping" : key == "contact_damping";
@@ -81,17 +87,17 @@ document::Problems noisyDamping(const scene::Scene& scene, const scene::Device& 
   const double rate = sampleRate(scene, info);
   const auto estimator = servo::makeEstimator(scene.servo.velocity, rate, info.resolution_m);
   if (!estimator || info.resolution_m <= 0) return warnings;
-  const double speed = speedOfOneCount(*estimator, rate, info.resolution_m);
+  const double speed = speedOfOneCount(*estimator, rate, info.resolution_m), share = feltShare(info);
   for (size_t i = 0; i < scene.models.size(); ++i)
     for (const std::string_view key : {"damping", "contact_damping", "viscosity"}) {
       const scene::Value* given = givenIn(scene.models[i].parameters, key);
       const bool of_its_swing = key == "damping" && scene.models[i].plugin == "pendulum";  // in N m s/rad
       const double growth = growthOf(scene.models[i], key);
-      const double force = given != nullptr && !of_its_swing ? given->number * growth * speed : 0;
+      const double force = given != nullptr && !of_its_swing ? given->number * growth * speed * share : 0;
       if (force <= kKnock) continue;
-      const std::string grown =
-          growth > 1 ? fmt::format(", which have grown to {:.3g} where it pushes with 3 N,", given->number * growth)
-                     : "";
+      const std::string grown = growth > 1 ? fmt::format(", which have grown to {:.3g} where it pushes with {:g} N,",
+                                                         given->number * growth, kPress)
+                                           : "";
       document::report(
           warnings, given->place.line > 0 ? given->place : scene.models[i].place,
           fmt::format("models[{}].parameters.{}", i, key),

@@ -9,7 +9,7 @@
 namespace hapticd::tune {
 
 /// [main] Warns of each model whose damping or viscosity makes a large force of one encoder count, with the estimator
-/// of servo.velocity at the rate of the samples; of a wall, whose damping grows with depth, where it pushes with 3 N.
+/// of servo.velocity at the rate of the samples; of a wall, whose damping grows with depth, where it pushes with 4 N.
 /// Names the damping, and the window if the model is as stable with it, that avoids it.
 /// @param info facts about the arm; its resolution and rate are used if they are known
 document::Problems noisyDamping(const scene::Scene& scene, const scene::Device& device, const hdv_info& info);

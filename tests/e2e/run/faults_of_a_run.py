@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What a run says of forces that the hand did not get: cut by a limit, or kept away by a fault that comes again.
+"""What a run says of forces that the hand did not get: cut by a limit, or kept away by a fault that comes again. And of an arm
+that swings.
 
 Usage: faults_of_a_run.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
@@ -55,6 +56,18 @@ def kept_away_by_a_fault(folder, ask):
     check("the summary tells of the fault and its time", "faults of arm: 1 in this run" in out and "left out" in out, out)
 
 
+def swings(folder, ask):
+    """Compliance control is not stable at a low rate, and the bounds on stiffness do not know this."""
+    report = os.path.join(folder, "report.json")
+    for rate, told in ((100, True), (300, True), (1500, False)):
+        _, out, _ = ask("run", os.path.join(SOURCE, "config/scenes/compliance.yaml"), "--virtual-time", "--for", "10",
+                        "--rate", f"{rate}", "--report", report)
+        with open(report, encoding="utf-8") as text:
+            (found,) = json.load(text)["limits"].values()
+        check(f"a run at {rate} Hz says whether its arm swings", (found["swing_hz"] > 12) == told and
+              (f"the arm is not stable at {rate} Hz" in out) == told, (found, out))
+
+
 def told_by_a_recording(folder, ask):
     file = os.path.join(folder, "run.h5")
     ask("run", SCENE, "--device", arm(folder, "velocity: 0.05"), "--virtual-time", "--for", "1", "--record", file)
@@ -96,6 +109,7 @@ with tempfile.TemporaryDirectory() as place:
     settings = dict(os.environ, RUNTIME_DIRECTORY=place, STATE_DIRECTORY=os.path.join(place, "state"))
     cut_by_a_limit(place, program(HAPTICD, settings))
     kept_away_by_a_fault(place, program(HAPTICD, settings))
+    swings(place, program(HAPTICD, settings))
     told_by_a_recording(place, program(HAPTICD, settings))
     cleared_in_vain(place, settings, program(HAPTICD, settings))
 finish()

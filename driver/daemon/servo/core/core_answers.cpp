@@ -168,7 +168,8 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
 
 /// Returns true if a model gave energy from nowhere. Only a hard surface is held to what was put in: what is soft gives
 /// back what it stored at another place, a shape that reports jumps gives energy on purpose, and a force without a
-/// contact may be a push or a magnet.
+/// contact may be a push or a magnet. What nobody feels, because the model is disabled or came around a tip, gives
+/// none.
 bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   const bool rests = (model.shape->description().flags & HSP_C_DEFORMS) == 0 && !(model.claims.jump > 0);
   const double reported = model.shape->storedEnergy();
@@ -177,8 +178,9 @@ bool Core::gives(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
     const hsp_probe& in = inputs_[i];
     const hsp_contact& out = outputs_[i];
     EnergyAccount& account = energies_[at(index, i)];
-    if ((in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) account.forgetPush();
-    if ((in.flags & HSP_IN_INVALID) != 0) continue;
+    const bool felt = model.guard.gain() > 0 && (in.flags & HSP_IN_INVALID) == 0;
+    if (!felt || (in.flags & HSP_IN_JUMP) != 0) account.forgetPush();
+    if (!felt) continue;
     const bool touches = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0;
     Push push{ConstMap(out.force), ConstMap(in.position), touches ? out.depth_m : 0, touches && rests};
     if (model.claims.moves_itself) push.position = model.frame.pointToModel(last_position_[i]);

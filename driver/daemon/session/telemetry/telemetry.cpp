@@ -14,7 +14,8 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
       models_(std::max<size_t>(scene.models.size(), places)),
       rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))),
       stops_(scene.devices.size()),
-      sent_(scene.devices.size()) {
+      sent_(scene.devices.size()),
+      swings_(scene.devices.size()) {
   for (const scene::Device& device : scene.devices) all_devices_.push_back(device.name);
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
@@ -84,7 +85,9 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const TickDuration& 
   ++recorded_;
   for (size_t i = 0; i < arms.size() && i < stops_.size(); ++i) {
     sent_[i].add(*arms[i]);
-    if (arms[i]->probe().valid) stops_[i].add(arms[i]->info(), arms[i]->sample());
+    if (!arms[i]->probe().valid) continue;
+    stops_[i].add(arms[i]->info(), arms[i]->sample());
+    if (arms[i]->limiter().fault() == Fault::kNone) swings_[i].add(t, arms[i]->probe().position);
   }
   if (!arms.empty()) {
     const Arm& arm = *arms.front();

@@ -17,6 +17,7 @@
 #include "session/telemetry/sent_force.hpp"
 #include "session/telemetry/status_writer.hpp"
 #include "session/telemetry/stop_counts.hpp"
+#include "session/telemetry/swing.hpp"
 
 namespace hapticd::servo {
 
@@ -87,6 +88,8 @@ class Telemetry final : public TickLog {
 
   /// [main] Returns what an arm gave to the hand.
   const SentForce& sent(size_t arm) const { return sent_[arm]; }
+  /// [main] Returns how the tip of an arm swung while forces were allowed.
+  const Swing& swing(size_t arm) const { return swings_[arm]; }
 
   /// [main] Returns the rows of the black box, oldest first.
   std::vector<BlackBoxRow> blackBox() const;
@@ -123,6 +126,7 @@ class Telemetry final : public TickLog {
   std::vector<BlackBoxRow> rows_;                  // used only without flight_
   std::vector<StopCounts> stops_;                  ///< statistics of joints at their stops, by arm
   std::vector<SentForce> sent_;                    ///< by arm
+  std::vector<Swing> swings_;                      ///< by arm
   std::vector<std::string> all_devices_;           ///< names of all arms
   BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "description/scene.hpp"
-#include "diagnostics/hand/swing.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/telemetry/stop_counts.hpp"
+#include "session/telemetry/swing.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::diagnostics {
@@ -42,7 +42,7 @@ struct WalkedArm {
   uint32_t nearest = 0;       ///< index of the model at the least distance
   uint32_t end = 0;           ///< number of the first joint that was at an end of its range there, from 1; 0 for none
   servo::StopCounts stops;    ///< ticks in which each joint was at an end of its range
-  Swing swing;                ///< of the tip
+  servo::Swing swing;         ///< of the tip
   double rate = 0;            ///< [Hz] of the arm's samples; 0: unknown
 };
 

@@ -18,7 +18,7 @@ bool reportSwing(const scene::Scene& scene, uint32_t index, const WalkedArm& see
       fmt::format(
           "the tip of {} swings by more than {:g} mm, {:.0f} times a second, as no hand moves it: the arm is not "
           "stable at {:g} Hz; expected a higher rate{}, or {}",
-          device.name, Swing::kSwing * 1e3, seen.swing.fastest(), scene.servo.rate, own, less));
+          device.name, servo::Swing::kSwing * 1e3, seen.swing.fastest(), scene.servo.rate, own, less));
   return true;
 }
 

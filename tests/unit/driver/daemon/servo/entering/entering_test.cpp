@@ -96,6 +96,19 @@ TEST(Entering, AFieldWithoutASurfaceFadesInSlowly) {
   EXPECT_DOUBLE_EQ(field.forceAt(0), 1.0);
 }
 
+/// The hand goes along with a field of 1 N, faster than a field may lead a hand.
+TEST(Entering, AModelThatIsNotFeltGivesNoEnergy) {
+  for (const bool enabled : {true, false}) {
+    Coming field("turning");
+    field.world->core().serve({.max_force = {1}});
+    field.largestAt(0, 2000);
+    if (!enabled) field.order(Order::Kind::kDisable, 0), field.largestAt(0, 200);
+    for (int i = 0; i < 3000; ++i) field.forceAt(1e-3 * i);
+    const ShapeFault fault = field.world->core().models()[0].guard.fault();
+    EXPECT_EQ(fault, enabled ? ShapeFault::kGives : ShapeFault::kNone);
+  }
+}
+
 TEST(Entering, AModelThatIsEnabledAroundTheTipWaitsAsWell) {
   Coming wall("wall");
   wall.largestAt(0.05, 120);

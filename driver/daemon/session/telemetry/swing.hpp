@@ -10,7 +10,7 @@
 
 #include "hapticd/abi.h"
 
-namespace hapticd::diagnostics {
+namespace hapticd::servo {
 
 /// Watches how often a tip turns round.
 class Swing {
@@ -53,4 +53,4 @@ class Swing {
   double fastest_ = 0;
 };
 
-}  // namespace hapticd::diagnostics
+}  // namespace hapticd::servo
