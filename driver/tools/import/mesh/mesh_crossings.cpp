@@ -46,7 +46,8 @@ class Sweep {
 
   /// Sorts the triangles along x, and tries each with the triangles that begin before it ends in x.
   Crossings run() {
-    constexpr std::size_t kMost = 200'000'000;  // [pairs] to try so many takes some seconds
+    constexpr std::size_t kMost = 200'000'000;  // [pairs of boxes] so many take some seconds
+    constexpr std::size_t kTriangles = 50;      // [pairs of boxes] one pair of triangles takes no longer
     take();
     Crossings found;
     std::size_t tried = 0;
@@ -54,6 +55,7 @@ class Sweep {
       for (std::size_t k = i + 1; k < taken_.size() && taken_[k].box.min().x() <= taken_[i].box.max().x(); ++k) {
         if (++tried > kMost) return found.all_tried = false, found;
         if (shell_[taken_[i].index] == shell_[taken_[k].index] || !taken_[i].box.intersects(taken_[k].box)) continue;
+        tried += kTriangles;
         const auto p = cross(triangle(taken_[i].index), triangle(taken_[k].index));
         if (p && found.pairs++ == 0) found.first = *p;
       }

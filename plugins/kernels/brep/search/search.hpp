@@ -20,7 +20,7 @@ namespace hapticd::brep {
 /// Limits of the work of one search.
 struct SearchBudget {
   int nodes = 2048;    ///< most nodes of the tree, of four boxes each
-  int elements = 256;  ///< most elements whose foot is computed
+  int elements = 256;  ///< most elements whose foot is computed; four times as many of them if they are triangles
 };
 
 /// The result of a search.

@@ -2,10 +2,12 @@
 /// Objects of OBJ files.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "cube.hpp"
+#include "mesh_import/mesh_crossings.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -78,6 +80,25 @@ TEST(MeshImport, SaysThatGroupsAreNotKept) {
   EXPECT_EQ(part.names, std::vector<std::string>{"x"}) << "a single object has the name of the file";
   ASSERT_EQ(report.remarks.size(), 1u);
   EXPECT_EQ(report.remarks[0].rfind("the file has 2 groups (g), which are not kept", 0), 0u);
+}
+
+/// Triangles that all cross each other would take minutes if every pair were tried.
+TEST(MeshImport, TriesNoMoreCrossingsThanASecondsWork) {
+  constexpr std::uint32_t kTriangles = 3000;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  std::vector<std::uint32_t> shell;
+  for (std::uint32_t i = 0; i < kTriangles; ++i) {
+    const double angle = 0.001 * i;
+    for (const double turn : {0.0, 2.0, 4.0})
+      points.emplace_back(std::cos(turn), std::sin(turn) * std::cos(angle),
+                          std::sin(turn) * std::sin(angle) + 1e-4 * i);
+    corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    shell.push_back(i);
+  }
+  const Crossings found = crossingsOf(points, corners, shell, kTriangles);
+  EXPECT_FALSE(found.all_tried);
+  EXPECT_GT(found.pairs, 0u);
 }
 
 }  // namespace

@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
 
 #include "kernels/part/check.hpp"
-#include "sample_parts.hpp"
+#include "sample_meshes.hpp"
 
 namespace hapticd::brep {
 namespace {
@@ -100,6 +101,27 @@ TEST(Search, FindsThePartFromAnyDistance) {
       ASSERT_TRUE(!found.found() || std::abs(found.distance() - (far - 0.01)) <= 1e-9 * far) << far;
     }
   ASSERT_TRUE(search.nearest({0.02, 0, 0.01}).proved);
+}
+
+/// At the tip of a cone, all of its triangles are equally near, or almost.
+TEST(Search, IsCertainWhereHundredsOfTrianglesMeet) {
+  constexpr std::uint32_t kSides = 720;
+  constexpr double kRim = 0.03, kTip = 0.02;
+  std::vector<Vector> points{{0, 0, kTip}};
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double turn = 2 * std::numbers::pi * i / kSides;
+    points.push_back({kRim * std::cos(turn), kRim * std::sin(turn), 0});
+    corners.push_back({0, 1 + i, 1 + (i + 1) % kSides});
+  }
+  const Model model(samples::meshOf(std::move(points), corners));
+  Search search(model);
+  std::mt19937 random(6);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p = randomIn(random, {-1e-4, -1e-4, kTip + 1e-4}, {1e-4, 1e-4, kTip + 2e-3});
+    const Nearest& found = search.nearest(p);
+    ASSERT_TRUE(found.found() && found.proved) << p.transpose();
+  }
 }
 
 /// The bounds of a face without loops may be anything finite.
