@@ -5,6 +5,7 @@ import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBas
   MeshLambertMaterial, Vector4, WireframeGeometry} from 'three';
 import {toCreasedNormals} from 'three/addons/utils/BufferGeometryUtils.js';
 import {colourOf, vertexColours} from './colours.js';
+import {placeBehind, seamsOf} from './seams.js';
 
 const kCrease = Math.PI / 5; // rad: if a plugin gives no normals, edges that bend by more than this stay sharp
 const kStains = 4; // largest number of contacts that colour one surface at a time
@@ -23,21 +24,24 @@ const kFragmentStain = `
   outgoingLight = mix(outgoingLight, stainColor, stain);
   #include <opaque_fragment>`;
 
+const noStains = () => ({
+  stains: {value: Array.from({length: kStains}, () => new Vector4(0, 0, 0, 0))},
+  stainRadius: {value: 0.01},
+  stainColor: {value: new Color('#ff4d12')},
+});
+
 /** Makes a material with Lambert's shading and a warm stain about each contact. A stain has a place in the world and a
- * strength. @param colour one `color`, or `vertexColors` */
-function stainedMaterial(colour) {
+ * strength. @param colour one `color`, or `vertexColors` @param uniforms the stains @param behind true for seams */
+function stainedMaterial(colour, uniforms = noStains(), behind = false) {
   const material = new MeshLambertMaterial({side: DoubleSide, ...colour});
-  const uniforms = {
-    stains: {value: Array.from({length: kStains}, () => new Vector4(0, 0, 0, 0))},
-    stainRadius: {value: 0.01},
-    stainColor: {value: new Color('#ff4d12')},
-  };
   material.userData = uniforms;
+  material.customProgramCacheKey = () => `stained${behind ? ' behind' : ''}`;
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = `varying vec3 vPlace;\n${shader.vertexShader}`.replace('#include <project_vertex>',
       '#include <project_vertex>\nvPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;');
     shader.fragmentShader = kFragmentHead + shader.fragmentShader.replace('#include <opaque_fragment>', kFragmentStain);
+    if (behind) placeBehind(shader);
   };
   return material;
 }
@@ -60,6 +64,8 @@ export class Models {
     this.group.remove(model.mesh);
     model.mesh.geometry.dispose();
     model.mesh.material.dispose();
+    model.seams?.geometry.dispose();
+    model.seams?.material.dispose();
     this.byIndex.delete(index);
   }
 
@@ -73,11 +79,14 @@ export class Models {
     else live.computeVertexNormals();
     const own = colourOf(plugin, index);
     if (triangles.colours) live.setAttribute('color', new BufferAttribute(vertexColours(triangles.colours, own), 3));
-    const material = stainedMaterial(triangles.colours ? {vertexColors: true} : {color: own});
+    const colour = triangles.colours ? {vertexColors: true} : {color: own}, material = stainedMaterial(colour);
     const mesh = new Mesh(triangles.normals ? live : toCreasedNormals(live, kCrease), material);
     mesh.name = name;
     if (pose) placeMesh(mesh, pose);
-    this.byIndex.set(index, {name, plugin, deforms, mesh, live, edges: null, triangles: triangles.corners.length / 3});
+    const lines = deforms ? null : seamsOf(mesh.geometry);
+    const seams = lines && new LineSegments(lines, stainedMaterial(colour, material.userData, true));
+    if (seams) mesh.add(seams);
+    this.byIndex.set(index, {name, plugin, deforms, mesh, live, seams, edges: null, triangles: triangles.corners.length / 3});
     this.group.add(mesh);
   }
 
