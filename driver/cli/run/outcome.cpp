@@ -58,6 +58,7 @@ record::LimitReport limitsOf(const servo::Runner& runner, size_t arm) {
                              .faults = limiter.faults(),
                              .fault_ticks = sent.fault_ticks,
                              .swing_hz = runner.telemetry().swing(arm).fastest(),
+                             .complies = runner.scene().devices[arm].admittance.has_value(),
                              .any = limiter.clips().any,
                              .ticks = {}};
   for (size_t i = 0; i < servo::kLimitCount; ++i)

@@ -189,8 +189,8 @@ std::string swingText(const LimitReport& device, const RunReport& report) {
   if (device.swing_hz == 0) return "";
   return fmt::format(
       "swing of {}: its tip swung {:.0f} times a second, by more than 1 mm; unless a shape did this, the arm is not "
-      "stable at {:.0f} Hz: take a higher rate, less stiffness, or with admittance more of its mass or damping\n",
-      device.device, device.swing_hz, report.rate_hz);
+      "stable at {:.0f} Hz: take a higher rate, or {}\n",
+      device.device, device.swing_hz, report.rate_hz, device.complies ? "more admittance.damping" : "less stiffness");
 }
 
 /// Reports joints at a stop: a hand that leans on a stop feels a force that does not come from the scene.

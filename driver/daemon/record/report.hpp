@@ -40,6 +40,7 @@ struct LimitReport {
   uint32_t faults = 0;                                  ///< faults of the run, those that are over included
   uint64_t fault_ticks = 0;                             ///< ticks in which a fault kept the force away
   double swing_hz = 0;                                  ///< [Hz] swing that no hand makes; 0: there was none
+  bool complies = false;                                ///< it is under compliance control
   uint64_t any = 0;                                     ///< ticks in which at least one limit reduced the force
   std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it reduced the force
 };

@@ -10,7 +10,7 @@ namespace hapticd::diagnostics {
 bool reportSwing(const scene::Scene& scene, uint32_t index, const WalkedArm& seen, document::Problems& warnings) {
   if (seen.swing.fastest() == 0) return false;
   const scene::Device& device = scene.devices[index];
-  const std::string less = device.admittance ? "more admittance.mass or admittance.damping" : "less stiffness";
+  const std::string less = device.admittance ? "more admittance.damping" : "less stiffness";
   const std::string own =
       seen.rate > scene.servo.rate ? fmt::format(", such as the {:g} Hz of the arm's samples", seen.rate) : "";
   document::report(
