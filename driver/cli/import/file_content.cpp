@@ -2,9 +2,11 @@
 #include "cli/import/file_content.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "base/file_beginning.hpp"
 #include "base/file_ending.hpp"
@@ -62,6 +64,18 @@ bool isObj(const std::string& bytes) {
   return false;
 }
 
+/// Returns true for a binary STL: its size is that of the number of triangles behind its first 80 bytes.
+bool isBinaryStl(const std::string& bytes, const std::string& file) {
+  constexpr std::size_t kHeader = 80, kTriangle = 50;
+  std::uint32_t triangles = 0;
+  if (bytes.size() < kHeader + sizeof triangles) return false;
+  for (std::size_t i = 0; i < sizeof triangles; ++i)
+    triangles |= std::uint32_t{static_cast<unsigned char>(bytes[kHeader + i])} << (8 * i);
+  std::error_code error;
+  return triangles > 0 &&
+         std::filesystem::file_size(file, error) == kHeader + sizeof triangles + kTriangle * std::uintmax_t{triangles};
+}
+
 }  // namespace
 
 std::string misnamed(const std::string& file) {
@@ -71,6 +85,8 @@ std::string misnamed(const std::string& file) {
   const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
                                    [&](const Kind& kind) { return words.starts_with(kind.begins); });
   if (found == std::end(kKinds) && isIges(bytes)) found = &kIges;
+  constexpr Kind kStl{"", "a mesh (binary STL)", ".stl ", ""};
+  if (found == std::end(kKinds) && isBinaryStl(bytes, file)) found = &kStl;
   constexpr Kind kObj{"", "a mesh (OBJ)", ".obj ", ""};
   if (found == std::end(kKinds) && isObj(bytes)) found = &kObj;
   if (found == std::end(kKinds)) return "";

@@ -43,6 +43,7 @@ constexpr double kSmall = 0.005;     ///< [m] a smaller model is hard to find wi
 constexpr double kFitting = 0.15;    ///< [m] size of a model that is felt well
 constexpr double kStiffness = 800;   ///< [N/m] of a rigid model, as the shipped scenes have it
 constexpr double kPress = 0.004;     ///< [m] how far the hand presses: with about 1 N, which the motors can hold
+constexpr double kFarAway = 9;       ///< [m] `check` warns of a position beyond 10 m
 constexpr double kOffMiddle = 0.15;  ///< [m] how far beside the middle the arm can press
 constexpr double kDeep = 0.03;       ///< [m] how far behind the side it can
 
@@ -235,6 +236,15 @@ void warnOfFit(const FirstScene& first, const Vector3d& size) {
                shellWord(first.scene).c_str(), withDigits(kFitting, 3).c_str(), scale.c_str());
 }
 
+/// Warns of a model whose own coordinates are so large that the scene must move it by metres.
+void warnOfPlace(const FirstScene& first, const Vector3d& middle) {
+  if (middle.norm() <= kFarAway || first.placement.center) return;
+  std::fprintf(stderr,
+               "warning: %s: is %s m from the origin of its own coordinates, so `check` takes its position for one in "
+               "another unit\n  fix: rm %s, then import it anew with --center\n",
+               first.model.c_str(), shortNumber(middle.norm()).c_str(), shellWord(first.scene).c_str());
+}
+
 }  // namespace
 
 std::string whyNoScene(const std::string& scene, const std::string& model) {
@@ -257,6 +267,7 @@ int writeFirstScene(const FirstScene& first) {
   if (const auto written = writeWhole(first.scene, textOf(first, *facts)); !written)
     return fail(kFailed, written.error());
   warnOfFit(first, facts->place.box.sizes());
+  warnOfPlace(first, facts->place.box.center());
   if (first.silent) return kWorked;
   const std::string scene = shellWord(first.scene);
   std::printf("%s\n\nthen:\n  hapticd check %s               # after each change\n  hapticd run %s --view\n",

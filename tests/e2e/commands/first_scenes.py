@@ -151,6 +151,12 @@ def odd_sizes():
         check(f"{name}: can be run", run("run", scene, "--virtual-time", "--for", "1").returncode == 0)
     code, out, err = run("import", join("hall.obj"), "-o", join("hall.hpart"), "--scene", join("hall-2.yaml"), "--fit", "0.15")
     check("the advice is right", code == 0 and "warning" not in err, err)
+    afar = write(folder, "afar.obj", box(0.05, 0.05, 0.05, (15, 0, 2)))
+    code, out, err = run("import", afar, "-o", join("afar.hpart"), "--scene", join("afar.yaml"))
+    check("afar: is written, with how to bring it near", code == 0 and "is 15.2 m from the origin" in err and "--center" in err, out + err)
+    code, out, err = run("import", afar, "-o", join("afar.hpart"), "--scene", join("afar-2.yaml"), "--center")
+    told = run("check", join("afar-2.yaml"))
+    check("that advice is right, too", code == 0 and "warning" not in err + told.stdout + told.stderr, f"{err}{told}")
     presses(join("hall-2.yaml"))
 
 

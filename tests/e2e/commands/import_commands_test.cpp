@@ -276,6 +276,9 @@ TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
   const auto told = [&](const std::string& words) { return run("import " + words).text; };
   EXPECT_TRUE(has(told("nothere.stl"), "nothere.stl: there is no such file"));
   EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
+  std::string binary(84 + 50, '\0');
+  binary[80] = 1;  // the number of its triangles
+  EXPECT_TRUE(has(told(put("binary.obj", binary)), "is a mesh (binary STL), by its first bytes"));
   EXPECT_TRUE(
       has(told("--medial " + put("x.step", "ISO-10303-21;\n") + " x.ma"), "--medial takes a closed surface of"));
   EXPECT_TRUE(
