@@ -41,13 +41,12 @@ std::size_t countFree(const TriangleCorners& corners) {
   return free;
 }
 
-/// Returns the median length of the edges with one triangle.
-double medianFree(const std::vector<Vector3d>& points, const std::vector<MeshEdge>& edges) {
+/// Returns the median length of the edges. Those of a border may all be as short as rounding, at the pole of a ball.
+double medianEdge(const std::vector<Vector3d>& points, const std::vector<MeshEdge>& edges) {
   std::vector<double> lengths;
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    end = endOfEdge(edges, i);
-    if (end - i == 1) lengths.push_back((points[edges[i].ends >> 32] - points[edges[i].ends & 0xffffffffu]).norm());
-  }
+  lengths.reserve(edges.size());
+  for (const MeshEdge& edge : edges)
+    lengths.push_back((points[edge.ends >> 32] - points[edge.ends & 0xffffffffu]).norm());
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
   return *middle;
@@ -156,7 +155,7 @@ std::size_t joinFreePoints(const std::vector<Vector3d>& points, double rounding,
   }
   if (count == 0 || !(rounding > 0)) return 0;
   // a part far from the origin has more digits than those of single precision
-  const double distance = std::min(rounding, kSmallShare * medianFree(points, edges));
+  const double distance = std::min(rounding, kSmallShare * medianEdge(points, edges));
   if (!(distance > kLeast * rounding)) return 0;
   Near near(points, distance);
   std::vector<std::uint32_t> number(points.size());

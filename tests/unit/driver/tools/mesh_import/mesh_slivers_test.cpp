@@ -94,6 +94,36 @@ TEST(MeshImport, JoinsTheEndsOfAnEdgeThatRoundingMade) {
   EXPECT_NEAR(report.volume, 1, 1e-6);
 }
 
+/// A ball of a script, of squares that are cut in two: sin(pi) is not quite 0, so its south pole is a ring, and so is
+/// the seam at the end of each turn not quite its begin.
+Mesh ballOfRings(int rings, int sides) {
+  const auto at = [&](int i, int j) -> Vector3d {
+    const double u = std::numbers::pi * i / rings, v = 2 * std::numbers::pi * j / sides;
+    const Vector3d p(std::sin(u) * std::cos(v), std::cos(u), std::sin(u) * std::sin(v));
+    return (kRadius * p).cast<float>().cast<double>();
+  };
+  Mesh mesh;
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sides; ++j) {
+      mesh.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
+      mesh.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+    }
+  return mesh;
+}
+
+TEST(MeshImport, ClosesThePoleAndTheSeamOfABallOfRings) {
+  for (const auto& [rings, sides] : {std::pair(10, 20), std::pair(10, 300)}) {
+    MeshReport report;
+    const brep::Model model(meshPart(fileOf(ballOfRings(rings, sides)), {}, "ball.stl", report));
+    EXPECT_TRUE(report.closed) << report.free_edges << " free edges";
+    EXPECT_EQ(report.triangles, 2u * static_cast<unsigned>(sides) * static_cast<unsigned>(rings - 1));
+    EXPECT_EQ(report.slivers, 0u);
+    brep::Tracer tracer(model);
+    for (int i = 0; i < 50; ++i) tracer.step(Vector3d(0, -kRadius - 1e-3 + 4e-5 * i, 0), {}, {});
+    EXPECT_GT(tracer.step(Vector3d(0, -kRadius + 1e-3, 0), {}, {}).depth, 0) << "the south pole pushes";
+  }
+}
+
 TEST(MeshImport, KeepsNarrowTrianglesThatRoundingDidNotMake) {
   std::string text = std::string(kCube) + "v 0.5 -0.0001 0\n";  // 200 times as far from its edge as rounding is
   text.replace(text.find("f 1 2 6 5"), 9, "f 1 9 2\nf 1 2 6\nf 1 6 5");
