@@ -10,6 +10,7 @@
 #include "base/short_number.hpp"
 #include "cli/support/command.hpp"
 #include "document/json_text.hpp"
+#include "import/progress_line.hpp"
 #include "import/unstated_unit.hpp"
 #include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
@@ -108,6 +109,35 @@ void print(const importing::MeshReport& r, const std::string& out, const importi
   warnOfSize(out, r.size.norm());
 }
 
+Result<importing::MeshFile> readMesh(const std::string& file) {
+  importing::ProgressLine progress;
+  progress.show("reading " + file);
+  const auto bytes = readRegular(file, kMaxMeshBytes);
+  if (!bytes) return Error{file + ": " + bytes.error()};
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  return importing::parseMesh(
+      *bytes, file, [&](const std::string& name) { return readRegular((folder / name).string(), kMaxMaterialBytes); });
+}
+
+/// Returns the bytes of the part that a mesh becomes.
+Result<std::string> makePart(importing::MeshFile& mesh, const MeshImport& options, importing::MeshReport& report) {
+  importing::ProgressLine progress;
+  const importing::Placement& placement = options.placement;
+  const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';
+  if (placed) importing::placePoints(mesh.points, mesh.corners, placement);
+  const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
+                                   unitOf(placement), placedText(placement),
+                                   [&progress](const char* what) { progress.show(what); }};
+  try {
+    const std::string name = std::filesystem::path(options.file).filename().string();
+    const brep::Part part = importing::meshPart(mesh, how, name, report);
+    progress.show("writing the part");
+    return brep::writePart(part);
+  } catch (const std::exception& error) {
+    return Error{options.file + ": " + error.what()};
+  }
+}
+
 }  // namespace
 
 void warnOfSize(const std::string& out, double size) {
@@ -144,32 +174,17 @@ int importMesh(const MeshImport& options) {
     return fail(kBadInput, options.out +
                                ": triangles become a part, expected a name that ends in .hpart\n  fix: for a "
                                "soft body (.ma, .yaml) add --medial");
-  const auto bytes = readRegular(options.file, kMaxMeshBytes);
-  if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
-  const std::filesystem::path folder = std::filesystem::path(options.file).parent_path();
-  auto mesh = importing::parseMesh(*bytes, options.file, [&](const std::string& name) {
-    return readRegular((folder / name).string(), kMaxMaterialBytes);
-  });
+  auto mesh = readMesh(options.file);
   if (!mesh) return failLines(kBadInput, mesh.error());
-  const importing::Placement& placement = options.placement;
-  const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';
-  if (placed) importing::placePoints(mesh->points, mesh->corners, placement);
   importing::MeshReport report;
-  std::string part;
-  try {
-    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
-                                     unitOf(placement), placedText(placement)};
-    const std::string name = std::filesystem::path(options.file).filename().string();
-    part = brep::writePart(importing::meshPart(*mesh, how, name, report));
-  } catch (const std::exception& error) {
-    return fail(kBadInput, options.file + ": " + error.what());
-  }
-  if (const auto written = writeWhole(options.out, part); !written) return fail(kFailed, written.error());
+  const auto part = makePart(*mesh, options, report);
+  if (!part) return fail(kBadInput, part.error());
+  if (const auto written = writeWhole(options.out, *part); !written) return fail(kFailed, written.error());
   const std::string& called = options.named.empty() ? options.out : options.named;
   if (options.json)
     std::printf("%s\n", jsonOf(report, called).c_str());
   else
-    print(report, called, placement);
+    print(report, called, options.placement);
   return kWorked;
 }
 

@@ -168,7 +168,7 @@ void printSize(const Eigen::AlignedBox3d& box, const MedialImport& options) {
 /// same.
 Result<Triangles> closedSurface(const MeshFile& file, const MedialImport& options) {
   MeshReport done;
-  RepairedMesh repaired_mesh = repaired(file, options.placement.scale, done);
+  RepairedMesh repaired_mesh = repaired(file, {.scale = options.placement.scale}, done);
   Triangles mesh{std::move(repaired_mesh.points), std::move(repaired_mesh.corners)};
   if (const auto closed = orientClosed(mesh, options.file); !closed) return Error{closed.error()};
   for (const std::string& line : linesOf(done)) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), line.c_str());

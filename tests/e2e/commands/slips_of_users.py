@@ -4,6 +4,7 @@
 Usage: slips_of_users.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import os
+import pty
 import resource
 import signal
 import struct
@@ -44,7 +45,7 @@ def foreign(folder, ask):
     code, out, err = ask("check", write(folder, "a.hpart", b"\3\0\0"))
     check("a part is no scene", code == 2 and "hapticd import" in out + err, (code, out, err))
     code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
-    check("a file without an ending is asked for it", code == 2 and "expected the ending .bpt, .stl" in err, (code, out, err))
+    check("a file without an ending is told which", code == 2 and "its name has no ending" in err and "rename it to" in err, (code, out, err))
     code, out, err = ask("import", write(folder, "short.stl", STL[:-1]), "-o", os.path.join(folder, "x.hpart"))
     check("a short STL is told its length", code != 0 and "1 triangle has 134 bytes, but this file has 133" in err, (code, out, err))
 
@@ -59,6 +60,16 @@ def cube(at, size=0.04):
 def stl(triangles):
     body = b"".join(struct.pack("<12f2x", 0, 0, 0, *[v for p in t for v in p]) for t in triangles)
     return struct.pack("<80sI", b"", len(triangles)) + body
+
+
+def on_a_terminal(*words):
+    """Returns what a command writes as errors and progress on a terminal."""
+    ours, theirs = pty.openpty()
+    subprocess.run([HAPTICD, *words], stdout=subprocess.DEVNULL, stderr=theirs, timeout=120, check=True)
+    os.close(theirs)
+    said = os.read(ours, 65536).decode()
+    os.close(ours)
+    return said
 
 
 def meshes(folder, ask):
@@ -84,6 +95,9 @@ def meshes(folder, ask):
     check("a part too small to be felt is warned of", "too small to be felt" in err, err)
     code, out, err = ask("import", os.path.join(folder, "a.stl"), "-o", out_file, "--scale", "1mm")
     check("a scale that is no number is told so", code == 2 and '"1mm" is not a number' in err, err)
+    steps = on_a_terminal("import", write(folder, "cube.stl", stl(cube((0, 0, 0)))), "-o", os.path.join(folder, "y.hpart"))
+    check("a terminal shows what a long import does, a log does not", all(step in steps for step in ("reading ", "joining the corners", "writing the part"))
+          and "joining" not in ask("import", os.path.join(folder, "cube.stl"), "-o", os.path.join(folder, "y.hpart"))[2], steps)
     code, out, err = ask("import", out_file, "-o", os.path.join(folder, "y.hpart"))
     check("a part is no file to import", code == 2 and "is a part already" in err, err)
     model = os.path.join(SOURCE, "config", "models", "box.yaml")

@@ -79,7 +79,7 @@ void addObjects(const std::vector<MeshObject>& objects, const MeshOptions& optio
   report.closed = true;
   for (const MeshObject& object : objects) {
     MeshReport of_body;
-    const RepairedMesh mesh = repaired(object.mesh, options.scale, of_body);
+    const RepairedMesh mesh = repaired(object.mesh, options, of_body);
     report.add(of_body);
     if (mesh.corners.empty()) continue;
     const std::uint32_t body = addBody(mesh, of_body.closed, options, part);
@@ -126,6 +126,7 @@ brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std:
   Eigen::AlignedBox3d box;
   for (const brep::Point& p : part.points) box.extend(Vector3d(p.data()));
   report.size = box.sizes();
+  options.progress("looking for bodies that overlap");
   report.overlaps = overlapsOf(part);
   report.borders = brep::openBorders(part);
   for (const std::string& line : linesOf(report)) part.warnings.push_back(line);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Makes a part from a triangle mesh: repairs what can be repaired, and reports the repairs.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct MeshOptions {
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less than this
   std::string unit{"m"};    ///< the unit that was assumed for the file's numbers; it is written into the part
   std::string placed{};     ///< how the points were turned and centred, such as "turned, z is up"; written as well
+  /// is told which step of the work begins, such as "joining corners"
+  std::function<void(const char* what)> progress = [](const char*) {};
 };
 
 /// A body of a mesh with several.

@@ -22,23 +22,26 @@ using Eigen::Vector3d;
 
 class Repair {
  public:
-  Repair(const MeshFile& mesh, double scale, MeshReport& report)
-      : triangles_{mesh.corners, std::vector<std::uint32_t>(mesh.corners.size())}, report_(report) {
+  Repair(const MeshFile& mesh, const MeshOptions& options, MeshReport& report)
+      : triangles_{mesh.corners, std::vector<std::uint32_t>(mesh.corners.size())}, options_(options), report_(report) {
     std::iota(triangles_.from.begin(), triangles_.from.end(), 0u);
     points_.reserve(mesh.points.size());
-    for (const Vector3d& p : mesh.points) points_.emplace_back(scale * p);
+    for (const Vector3d& p : mesh.points) points_.emplace_back(options.scale * p);
   }
 
   void run() {
+    options_.progress("joining the corners of triangles");
     dropDuplicates(Flange::kKeepOneSide);
     dropEmpty();
     dropDuplicates(Flange::kLeaveOut);  // a fold whose sliver was taken in lies on itself
+    options_.progress("turning the triangles outward");
     edges_ = meshEdges(corners_);
     orient();
     edges_ = meshEdges(corners_);  // flipped triangles have other edge numbers
     turnOutward();
     countEdges();
     report_.flipped = static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), 1));
+    options_.progress("looking for surfaces that cross");
     report_.crossings = crossingsOf(points_, corners_, shell_, report_.shells);
     dropUnusedPoints();
   }
@@ -176,6 +179,7 @@ class Repair {
     points_ = std::move(kept);
   }
 
+  const MeshOptions& options_;
   MeshReport& report_;
   double volume_ = 0;                 ///< [m^3] of all closed shells
   std::vector<std::uint32_t> shell_;  ///< shell of each triangle
@@ -184,8 +188,8 @@ class Repair {
 
 }  // namespace
 
-RepairedMesh repaired(const MeshFile& mesh, double scale, MeshReport& report) {
-  Repair repair(mesh, scale, report);
+RepairedMesh repaired(const MeshFile& mesh, const MeshOptions& options, MeshReport& report) {
+  Repair repair(mesh, options, report);
   repair.run();
   report.triangles = repair.corners_.size();
   report.points = repair.points_.size();

@@ -19,6 +19,6 @@ struct RepairedMesh {
 };
 
 /// [main] Repairs a mesh, and writes into the report what was done.
-RepairedMesh repaired(const MeshFile& mesh, double scale, MeshReport& report);
+RepairedMesh repaired(const MeshFile& mesh, const MeshOptions& options, MeshReport& report);
 
 }  // namespace hapticd::importing
