@@ -3,10 +3,12 @@
 #include <map>
 
 #include "kernels/part/names.hpp"
+#include "mesh_import/mesh_colours.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_text.hpp"
 #include "mesh_import/obj_materials.hpp"
 #include "mesh_import/polygons.hpp"
+#include "mesh_import/vertex_colours.hpp"
 #include "mesh_import/wrong_lines.hpp"
 
 namespace hapticd::importing {
@@ -40,6 +42,7 @@ class ObjReader {
     tellWhatIsDropped();
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     mesh_.colours = materials_.colours(mesh_.remarks);
+    if (mesh_.colours.empty()) mesh_.colours = std::move(colours_).colours(mesh_.corners.size());
     return std::move(mesh_);
   }
 
@@ -64,9 +67,18 @@ class ObjReader {
   void readPoint() {
     const auto p = nextPoint(words_);
     points_.push_back(weld_.at(p.value_or(Eigen::Vector3d::Zero())));
+    colours_.add(nextColour());
     if (p) return;
     fail("'" + plainWord(words_.wholeLine()) + "' is not a point; expected v x y z, finite numbers");
     tell(words_.lineNumber());
+  }
+
+  /// Reads the colour that some programs write after a point: red, green and blue, from 0 to 1. 0 if there is none; a
+  /// single number is a weight.
+  std::uint32_t nextColour() {
+    const auto red = finiteNumber(words_.next()), green = finiteNumber(words_.next()),
+               blue = finiteNumber(words_.next());
+    return red && green && blue ? colourWord(*red, *green, *blue) : 0;
   }
 
   /// Reads the indices of a face. They count from 1, or backward from the last point if they are negative. A line that
@@ -104,9 +116,12 @@ class ObjReader {
 
   bool addFace(const std::vector<std::int64_t>& indices, std::size_t line) {
     line_ = line;
+    const std::size_t first = mesh_.corners.size();
     std::vector<std::uint32_t> polygon;
+    std::vector<std::int64_t> vertices;
     for (const std::int64_t index : indices) {
       if (index > static_cast<std::int64_t>(points_.size())) return fail(outOfRange(std::to_string(index)));
+      vertices.push_back(index - 1);
       polygon.push_back(points_[static_cast<std::size_t>(index - 1)]);
     }
     if (polygon.size() < 3)
@@ -114,6 +129,7 @@ class ObjReader {
     if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
     mesh_.object.resize(mesh_.corners.size(), objectIndex());
     materials_.coverTo(mesh_.corners.size());
+    colours_.paint(vertices, points_, mesh_.corners, first);
     return true;
   }
 
@@ -156,7 +172,8 @@ class ObjReader {
   std::vector<std::int64_t> indices_;
   std::vector<Late> late_;
   ObjMaterials materials_;
-  std::string object_;  ///< the object to which faces belong
+  VertexColours colours_;  ///< count where no material has a colour
+  std::string object_;     ///< the object to which faces belong
   std::map<std::string, std::uint32_t> object_numbers_;
   std::size_t line_ = 0, lines_ = 0, groups_ = 0;
   bool free_form_ = false;

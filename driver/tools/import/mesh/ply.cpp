@@ -8,6 +8,7 @@
 #include "mesh_import/ply_body.hpp"
 #include "mesh_import/ply_colours.hpp"
 #include "mesh_import/polygons.hpp"
+#include "mesh_import/vertex_colours.hpp"
 #include "mesh_import/wrong_lines.hpp"
 
 namespace hapticd::importing {
@@ -50,7 +51,7 @@ class Reader {
     if (lines_ == Lines::kAnywhere)
       mesh_.remarks.emplace_back("lines and elements do not agree; the values were read one after another");
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
-    mesh_.colours = colours_.take(mesh_.corners.size());
+    mesh_.colours = std::move(colours_).colours(mesh_.corners.size());
     return std::move(mesh_);
   }
   /// True if the body is text, so that another division of its lines may fit.
@@ -175,7 +176,7 @@ class Reader {
   bool readItem(const Element& element, Body& body) {
     Vector3d p = Vector3d::Zero();
     const std::size_t first = mesh_.corners.size();
-    colours_.beginItem();
+    colour_.beginItem();
     for (const Property& property : element.properties) {
       if (property.count != Type::kUnknown) {
         const bool corners = property.name == "vertex_indices" || property.name == "vertex_index";
@@ -188,9 +189,10 @@ class Reader {
       if (!value) return failAt(body, "the value of the property " + std::string(property.name));
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         p[property.name[0] - 'x'] = *value;
-      colours_.see(property.name, property.type, *value);
+      colour_.see(property.name, property.type, *value);
     }
-    if (element.name == "face" || element.name == "tristrips") colours_.endFace(first, mesh_.corners.size());
+    if ((element.name == "face" || element.name == "tristrips") && colour_.word() != 0)
+      colours_.fill(first, mesh_.corners.size(), colour_.word());  // it comes before those of its vertices
     if (element.name != "vertex") return true;
     if (!p.allFinite()) return fail("a coordinate is not a finite number");
     addPoint(p);
@@ -199,7 +201,7 @@ class Reader {
 
   void addPoint(const Vector3d& p) {
     points_.push_back(weld_.at(p));
-    colours_.endVertex();
+    colours_.add(colour_.word());
   }
 
   /// Reads a list into `list_`, or passes over it.
@@ -268,7 +270,8 @@ class Reader {
   Weld weld_{mesh_.points};
   std::vector<std::uint32_t> points_;  ///< index of each vertex after equal points were joined
   std::vector<double> list_;
-  ply::Colours colours_;
+  ply::ItemColour colour_;
+  VertexColours colours_;
   std::size_t longer_ = 0;  ///< number of lines with more values than the header states
   std::string wrong_;
   WrongLines wrong_lines_;

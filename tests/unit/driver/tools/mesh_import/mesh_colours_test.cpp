@@ -157,6 +157,22 @@ std::string plyCube(const char* format, const std::string& faces, std::size_t co
 
 constexpr const char* kPlyFaces = "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
+TEST(MeshColours, AreThoseOfTheVerticesOfObj) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    const std::string place = std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2);
+    text += "v " + place + " " + place + "\n";
+  }
+  const std::string faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  MeshReport report;
+  expectPlaces(meshPart(*parseObjMesh(text + faces, "x.obj"), {}, "x.obj", report));
+  EXPECT_EQ(report.coloured, 12u);
+  EXPECT_TRUE(parseObjMesh("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n", "x.obj")->colours.empty()) << "weights";
+  const auto read = [](const std::string&) -> Result<std::string> { return std::string("newmtl red\nKd 1 0 0\n"); };
+  const auto mesh = parseObjMesh("mtllib a.mtl\nusemtl red\n" + text + faces, "x.obj", read);
+  EXPECT_EQ(counted(mesh->colours), (std::map<std::uint32_t, int>{{kRed, 12}})) << "a material comes first";
+}
+
 TEST(MeshColours, AreThoseOfTheVerticesOfPly) {
   for (const char* format : {"uchar", "ushort", "float", "double"}) {
     const auto mesh = parsePlyMesh(plyCube(format, kPlyFaces, 6), "x.ply");
