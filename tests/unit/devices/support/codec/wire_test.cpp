@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -160,6 +163,20 @@ TEST(Wire, AWatchdogThatIsSlowIsNoneForAHand) {
   EXPECT_TRUE(cutsSoon("0.1"));
   EXPECT_FALSE(cutsSoon("0.2"));
   EXPECT_FALSE(cutsSoon("0"));
+}
+
+/// A key that is renamed or removed must be so in the inputs of the fuzzers too, else they examine nothing.
+TEST(Wire, TheFuzzersBeginWithDescriptionsThatAreTaken) {
+  for (const char* folder : {"wire", "capture"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(HAPTICD_SOURCE_DIR "/tests/fuzz/corpus/" + std::string(folder))) {
+      if (entry.path().filename() == "misplaced") continue;
+      std::ifstream file(entry.path(), std::ios::binary);
+      std::string all((std::istreambuf_iterator<char>(file)), {});
+      ASSERT_FALSE(all.empty()) << entry.path();
+      const auto joints = static_cast<unsigned char>(all[0]) % 32 % (kMaxJoints + 1);
+      EXPECT_NO_THROW(readWire(all.substr(1, all.find('\0') - 1), joints)) << entry.path();
+    }
 }
 
 TEST(Wire, AWatchdogThatIsFasterThanTheCommandsIsRefused) {
