@@ -190,6 +190,8 @@ TEST(Wire, AWatchdogThatIsFasterThanTheCommandsIsRefused) {
     EXPECT_NE(std::string(e.what()).find("wire.watchdog: is 0.03 s"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("expected 0.04 s or more"), std::string::npos) << e.what();
   }
+  const std::string wrong = complaint(times(R"("rate":900000,"watchdog":0.02)"));
+  EXPECT_EQ(wrong.find("watchdog"), std::string::npos) << "of a wrong rate, nobody knows the pause: " << wrong;
 }
 
 TEST(Wire, NeighboursInOneByteAreNoOverlap) {
