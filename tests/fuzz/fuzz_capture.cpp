@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Fuzzes captures of arms: the reader, the decoder, and the hints about what does not fit. The first byte of the input
-/// gives the form of the capture and the number of joints; a wire format as JSON follows, and after a zero byte the
-/// capture.
+/// gives the form of the capture and, in its lower five bits, the number of joints; a wire format as JSON follows, and
+/// after a zero byte the capture.
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string all(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::size_t end = all.find('\0');
   if (end == std::string::npos) return 0;
-  const std::size_t joints = data[0] % (codec::kMaxJoints + 1);
+  const std::size_t joints = data[0] % 32 % (codec::kMaxJoints + 1);
   const auto captured = capture::readCapture(all.substr(end + 1), static_cast<capture::Form>(data[0] / 32 % 3));
   if (!captured) return 0;
   try {

@@ -244,10 +244,9 @@ void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
   const size_t before = tree.problems();
   wire.rate = tree.at("rate").number(kLeastRate, kMostRate, "Hz");
-  const bool known = tree.problems() == before;
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
   const double pause = 1 / wire.rate;  // between two commands
-  if (known && wire.watchdog > 0 && pause > wire.watchdog / 2)
+  if (tree.problems() == before && wire.watchdog > 0 && pause > wire.watchdog / 2)
     tree.at("watchdog")
         .fail("is " + secondsOf(wire.watchdog) + ", and commands are sent at wire.rate, each " + secondsOf(pause) +
               ", so one that comes late could switch the motors off; expected " + secondsOf(2 * pause) + " or more");

@@ -62,9 +62,8 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kReset:
       return "the board restarted and lost its zero; find out why it restarted, then calibrate again";
     case Trouble::kOld:
-      return "reports come, but all are old: their counter or clock does not grow; reset the board, or correct the "
-             "field "
-             "{is: counter} or {is: time} in the device file";
+      return "reports come, but all are old: their counter or clock does not grow; "
+             "reset the board, or correct the field {is: counter} or {is: time} in the device file";
   }
   return "unknown trouble";
 }
@@ -88,7 +87,6 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   attached_ = true;
   have_raw_ = false;
   turns_ = {};
-  old_ = false;
   reports_ = 0;
   attached_at_ = sent_;
   good_at_ = now;
@@ -130,8 +128,10 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   if (verdict == codec::Verdict::kWrongId) return false;  // another kind of report of the same device
   if (verdict != codec::Verdict::kGood) return reject(verdict), false;
   if (startedAnew(now)) have_raw_ = false;
-  old_ = have_raw_ && again();
-  if (old_) return false;
+  if (have_raw_ && again()) {
+    old_at_ = now;
+    return false;
+  }
   last_sequence_ = state_.sequence, last_clock_ = state_.clock;
   if (!follow(now, state_)) return true;
   arrivals_[reports_++ % kRateWindow] = now;
@@ -244,8 +244,8 @@ bool Session::watch(Nanoseconds now) noexcept {
   const Trouble before = sample_.trouble;
   const bool silent = seconds(good_at_, now) > settings_.health.stale;
   if (silent && before != Trouble::kFirmware) {
-    Trouble found = Trouble::kStale;
-    if (old_) found = Trouble::kOld;
+    const bool old = seconds(good_at_, old_at_) > settings_.health.stale / 2;  // one that comes twice is no stream
+    Trouble found = old ? Trouble::kOld : Trouble::kStale;
     if (last_bad_ == codec::Verdict::kWrongSize) found = Trouble::kShort;
     if (last_bad_ == codec::Verdict::kCorrupt) found = Trouble::kCorrupt;
     if (last_bad_ == codec::Verdict::kTorn) found = Trouble::kTorn;

@@ -113,11 +113,10 @@ class Session {
   std::array<Nanoseconds, kRateWindow> arrivals_{};
   std::array<uint64_t, kRateWindow> answered_{};  ///< number of reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
-  Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
+  Nanoseconds good_at_ = 0, old_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
   bool clock_tells_ = false;  ///< the arm's clock has a new value in each report
-  bool old_ = false;          ///< the last report was an old one
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

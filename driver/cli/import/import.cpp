@@ -100,41 +100,45 @@ int importSoftBody(const ImportArguments& options) {
   return done ? kWorked : fail(kFailed, done.error());
 }
 
-int importModel(const ImportArguments& options) {
-  const bool part = std::filesystem::path(options.file).extension() == ".hpart";
+/// Returns why a file cannot be imported, and what to do instead; "" if nothing is known against it.
+std::string whyNotImported(const ImportArguments& options) {
+  const std::string& file = options.file;
+  const bool part = std::filesystem::path(file).extension() == ".hpart";
   if (part && options.medial)
-    return fail(kBadInput, options.file +
-                               ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of "
-                               "which the part was made, or one that a CAD program exports");
-  const bool model = !options.medial && options.answers.empty() && modelFileOf(options.file) != ModelFile::kNone;
+    return file +
+           ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of which the part was "
+           "made, or one that a CAD program exports";
+  const bool model = !options.medial && options.answers.empty() && modelFileOf(file) != ModelFile::kNone;
   if (part || model)
-    return fail(kBadInput, options.file + ": is a " + (part ? "part" : "model file") +
-                               " already, whose size and place stay\n  fix: hapticd import " + shellWord(options.file) +
-                               " --scene SCENE.yaml writes a scene for it, hapticd view " + shellWord(options.file) +
-                               " shows it");
-  if (const std::string better = otherCommand(options.file); !better.empty()) return fail(kBadInput, better);
-  if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
-  if (std::error_code error; !std::filesystem::exists(options.file, error))
-    return fail(kBadInput, options.file + ": there is no such file");
-  if (options.medial && isCadFile(options.file))
+    return file + ": is a " + (part ? "part" : "model file") +
+           " already, whose size and place stay\n  fix: hapticd import " + shellWord(file) +
+           " --scene SCENE.yaml writes a scene for it, hapticd view " + shellWord(file) + " shows it";
+  if (std::string better = otherCommand(file); !better.empty()) return better;
+  if (std::string other = misnamed(file); !other.empty()) return other;
+  if (std::error_code error; !std::filesystem::exists(file, error)) return file + ": there is no such file";
+  if (options.medial && isCadFile(file))
+    return file +
+           ": --medial takes a closed surface of triangles, not CAD\n  fix: export a mesh in a CAD program, then: "
+           "hapticd import --medial BODY.stl BODY.ma";
+  if (const std::string wrong = misplaced(options, isCadFile(file)); !wrong.empty()) return file + ": " + wrong;
+  if (std::string kept = whyKept(options); !kept.empty()) return kept;
+  return options.out == "-" ? "" : whyNotWritable(options.out);
+}
+
+int importAnswers(const ImportArguments& options) {
+  if (endingOf(options.file) == ".ma" || isMeshFile(options.file))
     return fail(kBadInput, options.file +
-                               ": --medial takes a closed surface of triangles, not CAD\n  fix: export a mesh in a CAD "
-                               "program, then: hapticd import --medial BODY.stl BODY.ma");
-  const bool from_cad = isCadFile(options.file);
-  if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
-    return fail(kBadInput, options.file + ": " + wrong);
-  for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})
-    if (!wrong.empty()) return fail(kBadInput, wrong);
-  if (from_cad) return importCadFile(options);
+                               ": holds no material, expected a model file (.yaml) of a soft body\n  fix: hapticd "
+                               "import --medial MESH.stl -o BODY.yaml makes one");
+  const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
+  return done ? kWorked : fail(kBadInput, done.error());
+}
+
+int importModel(const ImportArguments& options) {
+  if (const std::string wrong = whyNotImported(options); !wrong.empty()) return fail(kBadInput, wrong);
+  if (isCadFile(options.file)) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
-  if (!options.answers.empty()) {
-    if (endingOf(options.file) == ".ma" || isMeshFile(options.file))
-      return fail(kBadInput, options.file +
-                                 ": holds no material, expected a model file (.yaml) of a soft body\n  fix: hapticd "
-                                 "import --medial MESH.stl -o BODY.yaml makes one");
-    const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
-    return done ? kWorked : fail(kBadInput, done.error());
-  }
+  if (!options.answers.empty()) return importAnswers(options);
   Placement placement = options.placement;
   placement.up = options.up[0];
   if (isMeshFile(options.file))

@@ -18,17 +18,22 @@ class SampleInterval {
   /// [rt] Takes the stamp of a new sample and returns the time [s] since the sample before.
   /// @param stamp_ns time of the measurement; 0: unknown
   /// @param passed [s] between the ticks that saw the two samples. It counts where stamps do not advance, or hardly do:
-  /// such samples waited in a buffer, and were stamped together
+  /// such samples waited in a buffer, and were stamped together. The next stamp counts from there
   double update(uint64_t stamp_ns, double passed) noexcept HSP_RT {
     const uint64_t before = stamp_ns_;
     stamp_ns_ = stamp_ns;
-    if (before == 0 || stamp_ns <= before) return passed;
-    const double measured = static_cast<double>(stamp_ns - before) * 1e-9;
-    return measured < passed / 4 ? passed : std::min(measured, passed + kAhead);
+    if (before == 0 || stamp_ns < before) {
+      ahead_ = 0;
+      return passed;
+    }
+    const double measured = static_cast<double>(stamp_ns - before) * 1e-9 - ahead_;
+    ahead_ = measured < passed / 4 ? std::min(passed - measured, kAhead) : 0;
+    return ahead_ > 0 ? passed : std::min(measured, passed + kAhead);
   }
 
  private:
   uint64_t stamp_ns_ = 0;
+  double ahead_ = 0;  // [s] by how much more the last samples counted than their stamps advanced
 };
 
 }  // namespace hapticd::servo

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/contact/tracer.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "kernels/brep/contact/next_faces.hpp"
 
 namespace hapticd::brep {

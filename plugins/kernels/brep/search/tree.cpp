@@ -15,7 +15,7 @@ namespace {
 /// True if a search must end. Where nothing was found yet, it goes on for longer: without any foot, the part would not
 /// be felt at all. So does the search of a mesh: the foot on a triangle takes a tenth of the time of one on a spline,
 /// and at the hub of a fan, such as the tip of a cone, all its triangles are equally near.
-bool isSpent(const Nearest& best, const SearchBudget& budget, bool mesh) {
+bool isSpent(const Nearest& best, const SearchBudget& budget, bool mesh) noexcept {
   constexpr std::int64_t kMore = 8, kTriangles = 4;
   const std::int64_t times = best.found() ? 1 : kMore, elements = mesh ? kTriangles : 1;
   return best.nodes >= times * budget.nodes || best.elements >= times * elements * budget.elements;

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -162,6 +165,20 @@ TEST(Wire, AWatchdogThatIsSlowIsNoneForAHand) {
   EXPECT_FALSE(cutsSoon("0"));
 }
 
+/// A key that is renamed or removed must be so in the inputs of the fuzzers too, else they examine nothing.
+TEST(Wire, TheFuzzersBeginWithDescriptionsThatAreTaken) {
+  for (const char* folder : {"wire", "capture"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(HAPTICD_SOURCE_DIR "/tests/fuzz/corpus/" + std::string(folder))) {
+      if (entry.path().filename() == "misplaced") continue;
+      std::ifstream file(entry.path(), std::ios::binary);
+      std::string all((std::istreambuf_iterator<char>(file)), {});
+      ASSERT_FALSE(all.empty()) << entry.path();
+      const auto joints = static_cast<unsigned char>(all[0]) % 32 % (kMaxJoints + 1);
+      EXPECT_NO_THROW(readWire(all.substr(1, all.find('\0') - 1), joints)) << entry.path();
+    }
+}
+
 TEST(Wire, AWatchdogThatIsFasterThanTheCommandsIsRefused) {
   const auto times = [](const std::string& given) { return changed("\"rate\":1000", given); };
   EXPECT_NO_THROW(readWire(times(R"("rate":1000,"watchdog":0.002)"), 1));
@@ -173,6 +190,8 @@ TEST(Wire, AWatchdogThatIsFasterThanTheCommandsIsRefused) {
     EXPECT_NE(std::string(e.what()).find("wire.watchdog: is 0.03 s"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("expected 0.04 s or more"), std::string::npos) << e.what();
   }
+  const std::string wrong = complaint(times(R"("rate":900000,"watchdog":0.02)"));
+  EXPECT_EQ(wrong.find("watchdog"), std::string::npos) << "of a wrong rate, nobody knows the pause: " << wrong;
 }
 
 TEST(Wire, NeighboursInOneByteAreNoOverlap) {

@@ -142,6 +142,14 @@ INSTANTIATE_TEST_SUITE_P(
                             }}),
     [](const auto& param) { return param.param.name; });
 
+TEST(Session, ABoardThatSendsItsLastReportTwiceIsSilentThen) {
+  Rig rig;
+  rig.run(0.5);
+  rig.run(0.001, [last = rig.board.bytes()](auto& bytes) { return bytes = last, true; });
+  rig.run(0.3, [](auto&) { return false; });
+  EXPECT_EQ(rig.session_.trouble(), Trouble::kStale) << describe(rig.session_.trouble());
+}
+
 TEST(Session, SomeBadReportsAreNoFault) {
   Rig rig;
   rig.run(0.5);

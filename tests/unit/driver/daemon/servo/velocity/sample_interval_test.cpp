@@ -33,5 +33,19 @@ TEST(SampleInterval, OfSamplesThatWereStampedTogetherIsThatOfTheTicks) {
   EXPECT_EQ(interval.update(1'001'000, 0.25e-3), 0.25e-3);
 }
 
+/// Such as samples that come in pairs, or stamps of whole milliseconds.
+TEST(SampleInterval, OfAHandThatGoesOnStaysTheSameWhereSeveralSamplesHaveOneStamp) {
+  for (const uint64_t together : {2, 4}) {
+    SampleInterval interval;
+    for (uint64_t i = 1; i < 100; ++i) {
+      const uint64_t stamp = 500'000 * together * (1 + i / together) + i % together;
+      const double since = interval.update(stamp, 0.5e-3);
+      if (i > together) {
+        EXPECT_NEAR(since, 0.5e-3, 1e-8) << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::servo
