@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/import/patches.hpp"
 
+#include <cstdio>
 #include <filesystem>
 
+#include "base/regular_file.hpp"
 #include "cli/import/mesh.hpp"
 #include "cli/support/command.hpp"
 #include "document/node.hpp"
