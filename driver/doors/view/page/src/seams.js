@@ -3,15 +3,20 @@
  * faces along their common edge may differ; what is behind would show through, as specks a pixel wide. */
 import {BufferAttribute, BufferGeometry} from 'three';
 
-const kMost = 200_000; // triangles; larger models have small triangles, and no time is left to look for their seams
+const kMost = 100_000; // triangles; larger models have small triangles, and to look for their seams takes too long
 
 /** Returns a number for each corner; corners at the same place have the same one. */
 function placesOf(position) {
-  const seen = new Map(), places = new Uint32Array(position.count);
+  const bits = new Uint32Array(Float32Array.from(position.array, (x) => x + 0).buffer), places = new Uint32Array(position.count);
+  const table = new Int32Array(2 ** Math.ceil(Math.log2(2 * places.length + 2))).fill(-1); // open addressing
+  const same = (i, j) => bits[3 * i] === bits[3 * j] && bits[3 * i + 1] === bits[3 * j + 1] && bits[3 * i + 2] === bits[3 * j + 2];
   for (let i = 0; i < places.length; ++i) {
-    const place = `${position.getX(i)},${position.getY(i)},${position.getZ(i)}`;
-    if (!seen.has(place)) seen.set(place, i);
-    places[i] = seen.get(place);
+    let hash = [0, 1, 2].reduce((sum, k) => Math.imul(sum ^ bits[3 * i + k], 0x9e3779b1), 0);
+    hash ^= hash >>> 15;
+    let slot = hash & (table.length - 1);
+    while (table[slot] >= 0 && !same(table[slot], i)) slot = (slot + 1) & (table.length - 1);
+    if (table[slot] < 0) table[slot] = i;
+    places[i] = table[slot];
   }
   return places;
 }
