@@ -44,8 +44,11 @@ def foreign(folder, ask):
     check("a recording is no scene", code == 2 and "a recording (HDF5)" in out + err and "hapticd replay" in out + err, (code, out, err))
     code, out, err = ask("check", write(folder, "a.hpart", b"\3\0\0"))
     check("a part is no scene", code == 2 and "hapticd import" in out + err, (code, out, err))
-    code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
-    check("a file without an ending is told which", code == 2 and "its name has no ending" in err and "rename it to" in err, (code, out, err))
+    named = write(folder, "cubestl", STL)
+    code, out, err = ask("import", named, "-o", os.path.join(folder, "x.hpart"))
+    check("a mesh without an ending is told the one that it needs", code == 2 and f"rename it to {named}.stl" in err, (code, out, err))
+    code, out, err = ask("import", write(folder, "cube", b"no model"), "-o", os.path.join(folder, "x.hpart"))
+    check("any other file without an ending is asked for it", code == 2 and "expected the ending .bpt, .stl" in err, (code, out, err))
     code, out, err = ask("import", write(folder, "short.stl", STL[:-1]), "-o", os.path.join(folder, "x.hpart"))
     check("a short STL is told its length", code != 0 and "1 triangle has 134 bytes, but this file has 133" in err, (code, out, err))
 
