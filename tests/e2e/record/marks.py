@@ -54,9 +54,10 @@ def marks(ask):
 
 def areTold(file, ticks, folder, ask):
     """@param ticks what the daemon answered"""
-    rows = h5py.File(file)["marks"][:]
+    rows, run = h5py.File(file)["marks"][:], h5py.File(file)["ticks"][:]
+    times = dict(zip(run["tick"].tolist(), run["t"].tolist()))  # a tick that the machine missed has no row
     check("the recording has them, with tick, time and text", rows["tick"].tolist() == ticks and [text.decode() for text in rows["text"]] == [FIRST, SECOND, LONGEST]
-          and abs(rows["t"] - rows["tick"] / 1000).max() < 1e-9, rows)
+          and rows["t"].tolist() == [times[tick] for tick in ticks], rows)
     events = h5py.File(file)["events"][:]
     kinds = json.loads(h5py.File(file)["about"][()])["events"]
     found = events[events["kind"] == kinds.index("mark")]
