@@ -154,6 +154,10 @@ def experiment(folder):
     with Daemon(HAPTICD, folder, "trials", soft, "--record", recorded):
         done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "4", "--seconds",
                                "2.5", "--out", out, "--question", "How hard? "], env=environment, input="\n5\n" * 4, capture_output=True, text=True, timeout=200)
+        cut = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "1", "--seconds",
+                              "0.5", "--out", out + "-cut", "--question", "How hard? "], env=environment, input="\n", capture_output=True, text=True, timeout=200)
+    kept = list(csv.DictReader(open(os.path.join(out + "-cut", "trials.csv"))))
+    check("a trial whose question has no answer keeps its row", cut.returncode != 0 and [row["answer"] for row in kept] == [""], (cut, kept))
     table = list(csv.DictReader(open(os.path.join(out, "trials.csv")))) if done.returncode == 0 else []
     force = {name: [float(row["force_n"]) for row in table if row["scene"].endswith(name)] for name in ("soft.yaml", "hard.yaml")}
     check("experiment.py presents each stimulus equally often", [len(f) for f in force.values()] == [2, 2], (done, table))

@@ -71,8 +71,12 @@ def write(number, scene, rows, table):
     force = max(sum(row["arm0_sent_f" + axis] ** 2 for axis in "xyz") ** 0.5 for row in rows)
     depth = max(row["depth"] for row in rows)
     valid = force > 0 and not any(row["arm0_fault"] for row in rows)  # a trial without a force, or with a fault, is none
-    answer = input(options.question) if options.question else ""
-    table.writerow([number, scene, rows[0]["tick"], len(rows), force, depth, int(valid), answer])
+    answer = ""
+    try:
+        if options.question:
+            answer = input(options.question)
+    finally:  # Ctrl-C at the question loses the answer alone
+        table.writerow([number, scene, rows[0]["tick"], len(rows), force, depth, int(valid), answer])
     print(f"{scene}: at most {force:.2f} N, {1e3 * depth:.2f} mm deep{'' if valid else ': NOT VALID (no force, or a fault)'}", flush=True)
 
 
