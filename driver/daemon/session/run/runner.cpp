@@ -210,6 +210,8 @@ Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<vo
   lookAfter(proximity, anyhow, every);
   watch::notify("STOPPING=1");
   servo.join();
+  // keepGuard() may have armed it again after the servo thread disarmed it, because it saw the run just before its end
+  if (guard_ && loop_->silent()) guard_->arm(false);
   wall_time_ = monotonicNow() - begun;
   stopArmsWatched(watched);
   if (guard_) guard_->arm(false);
