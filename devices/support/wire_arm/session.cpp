@@ -7,6 +7,8 @@
 namespace hapticd::wire_arm {
 namespace {
 
+constexpr double kGap = 5;          ///< [reports] see Session::longGap()
+constexpr uint64_t kFewBad = 4;     ///< fewer bad reports in Session::kRateWindow do not make an arm too slow
 constexpr double kOldReports = 64;  ///< most reports that an arm, a hub or the kernel may keep and send again
 
 double seconds(Nanoseconds from, Nanoseconds to) noexcept {
@@ -90,7 +92,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   reports_ = 0;
   attached_at_ = sent_;
   good_at_ = now;
-  last_bad_ = codec::Verdict::kGood;
+  bad_at_ = 0;
   // The arm does not count as healthy yet. It begins with a trouble, which ends after some time of good reports.
   raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
 }
@@ -109,24 +111,25 @@ bool Session::receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept 
   if (!wire_.framing.used) return take(now, bytes);
   bool fresh = false;
   const size_t lost = framer_.take(bytes, [&](std::span<const uint8_t> report) { fresh = take(now, report) || fresh; });
-  if (lost > 0) reject(codec::Verdict::kCorrupt);
+  if (lost > 0) reject(now, codec::Verdict::kCorrupt);
   return fresh;
 }
 
-void Session::reject(codec::Verdict verdict) noexcept {
+void Session::reject(Nanoseconds now, codec::Verdict verdict) noexcept {
   ++bad_reports_;
+  bad_at_ = now;
   last_bad_ = verdict;
 }
 
 bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   const codec::Verdict verdict = codec::decode(wire_.input, bytes, state_);
   if (verdict == codec::Verdict::kWrongFirmware) {
-    reject(verdict);
+    reject(now, verdict);
     raise(now, Trouble::kFirmware);
     return true;
   }
   if (verdict == codec::Verdict::kWrongId) return false;  // another kind of report of the same device
-  if (verdict != codec::Verdict::kGood) return reject(verdict), false;
+  if (verdict != codec::Verdict::kGood) return reject(now, verdict), false;
   if (startedAnew(now)) have_raw_ = false;
   if (have_raw_ && again()) {
     old_at_ = now;
@@ -134,9 +137,8 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   }
   last_sequence_ = state_.sequence, last_clock_ = state_.clock;
   if (!follow(now, state_)) return true;
-  arrivals_[reports_++ % kRateWindow] = now;
+  arrivals_[reports_++ % kRateWindow] = {now, bad_reports_};
   good_at_ = now;
-  last_bad_ = codec::Verdict::kGood;
   if (state_.fault)
     raise(now, Trouble::kHardware);
   else
@@ -235,24 +237,38 @@ bool Session::tooSlow(Nanoseconds now) noexcept {
     const auto answers = static_cast<double>(reports_ - answered_[sent_ % kRateWindow]);
     return sent_ > attached_at_ + kRateWindow && answers < settings_.health.least_rate * (kRateWindow - 1);
   }
-  const Nanoseconds oldest = arrivals_[reports_ % kRateWindow];
+  const Nanoseconds oldest = arrivals_[reports_ % kRateWindow].at;
   return seconds(oldest, now) > static_cast<double>(kRateWindow) / (wire_.rate * settings_.health.least_rate);
+}
+
+/// Returns how long [s] new reports are away before an arm is silent and not slow.
+double Session::longGap() const noexcept {
+  return std::min(kGap / wire_.rate, settings_.health.stale / 2);
+}
+
+/// Returns what comes in place of new reports since the given time.
+Trouble Session::whatComes(Nanoseconds since) const noexcept {
+  if (bad_at_ > since) {
+    if (last_bad_ == codec::Verdict::kWrongSize) return Trouble::kShort;
+    if (last_bad_ == codec::Verdict::kCorrupt) return Trouble::kCorrupt;
+    if (last_bad_ == codec::Verdict::kTorn) return Trouble::kTorn;
+  }
+  const double gap = seconds(good_at_, old_at_);  // a report that comes twice is no stream of old ones
+  return gap > longGap() ? Trouble::kOld : Trouble::kStale;
 }
 
 bool Session::watch(Nanoseconds now) noexcept {
   if (!attached_) return false;
   const Trouble before = sample_.trouble;
-  const bool silent = seconds(good_at_, now) > settings_.health.stale;
-  if (silent && before != Trouble::kFirmware) {
-    const bool old = seconds(good_at_, old_at_) > settings_.health.stale / 2;  // one that comes twice is no stream
-    Trouble found = old ? Trouble::kOld : Trouble::kStale;
-    if (last_bad_ == codec::Verdict::kWrongSize) found = Trouble::kShort;
-    if (last_bad_ == codec::Verdict::kCorrupt) found = Trouble::kCorrupt;
-    if (last_bad_ == codec::Verdict::kTorn) found = Trouble::kTorn;
+  const double gap = seconds(good_at_, now);
+  if (gap > settings_.health.stale && before != Trouble::kFirmware) {
     const bool named = before == Trouble::kHardware || before == Trouble::kJump;
-    raise(now, named ? before : found);
-  } else if (tooSlow(now) && (before == Trouble::kNone || before == Trouble::kSlow)) {
-    raise(now, Trouble::kSlow);
+    raise(now, named ? before : whatComes(good_at_));
+  } else if (tooSlow(now)) {
+    const Arrival& oldest = arrivals_[reports_ % kRateWindow];
+    const bool slow = gap < longGap() && bad_reports_ < oldest.bad + kFewBad;
+    const Trouble found = slow ? Trouble::kSlow : whatComes(oldest.at);
+    if (before == Trouble::kNone || before == Trouble::kSlow || before == found) raise(now, found);
   }
   return sample_.trouble != before;
 }

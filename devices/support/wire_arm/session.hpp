@@ -90,12 +90,20 @@ class Session {
   static constexpr size_t kRateWindow = 10;
 
  private:
+  /// The arrival of a good report.
+  struct Arrival {
+    Nanoseconds at = 0;
+    uint64_t bad = 0;  ///< number of bad reports before it
+  };
+
   bool take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept;
   bool follow(Nanoseconds now, const codec::State& state) noexcept;
-  void reject(codec::Verdict verdict) noexcept;
+  void reject(Nanoseconds now, codec::Verdict verdict) noexcept;
   void recover(Nanoseconds now) noexcept;
   double gain(Nanoseconds now, bool healthy) noexcept;
   bool tooSlow(Nanoseconds now) noexcept;
+  double longGap() const noexcept;
+  Trouble whatComes(Nanoseconds since) const noexcept;
   void raise(Nanoseconds now, Trouble trouble) noexcept;
   void publish(Nanoseconds now, const codec::State& state) noexcept;
   bool startedAnew(Nanoseconds now) noexcept;
@@ -110,10 +118,10 @@ class Session {
   JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span_: range after which a position wraps, 0 if it does not wrap
   JointArray lost_{};                             ///< sum of the jumps of each joint since it had its zero
   double sequence_cycle_ = 0, clock_cycle_ = 0;   ///< numbers of reports begin anew after so much; clock: [s]
-  std::array<Nanoseconds, kRateWindow> arrivals_{};
+  std::array<Arrival, kRateWindow> arrivals_{};
   std::array<uint64_t, kRateWindow> answered_{};  ///< number of reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
-  Nanoseconds good_at_ = 0, old_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
+  Nanoseconds good_at_ = 0, bad_at_ = 0, old_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
   bool clock_tells_ = false;  ///< the arm's clock has a new value in each report

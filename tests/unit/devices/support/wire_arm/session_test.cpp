@@ -105,6 +105,13 @@ TEST_P(Faults, EndTheForceWithinTwentyMillisecondsAndPass) {
   EXPECT_LT(rig.current_, 300) << "comes back in a ramp";
 }
 
+TEST_P(Faults, HaveTheirNameFromTheFirst) {
+  Rig rig;
+  rig.run(0.5);
+  for (int ms = 0; ms < 100 && rig.session_.trouble() == Trouble::kNone; ++ms) rig.run(0.001, GetParam().spoil);
+  EXPECT_EQ(rig.session_.trouble(), GetParam().trouble) << describe(rig.session_.trouble());
+}
+
 int g_count = 0;
 INSTANTIATE_TEST_SUITE_P(
     Each, Faults,
@@ -141,6 +148,14 @@ INSTANTIATE_TEST_SUITE_P(
                               return b = hot.bytes(), true;
                             }}),
     [](const auto& param) { return param.param.name; });
+
+TEST(Session, HalfOfItsReportsAreCorruptAndThatIsWhyItIsSlow) {
+  Rig rig;
+  rig.run(0.5);
+  int n = 0;
+  rig.run(0.6, [&](auto& bytes) { return ++n % 2 == 0 ? (bytes[9] ^= 1, true) : true; });
+  EXPECT_EQ(rig.session_.trouble(), Trouble::kCorrupt) << describe(rig.session_.trouble());
+}
 
 TEST(Session, ABoardThatSendsItsLastReportTwiceIsSilentThen) {
   Rig rig;
