@@ -125,6 +125,19 @@ class Arm : public Device, public Parameters {
       links_ = kinematics::Extension<T>::linksOf(*arm_);
       return &links_;
     }
+    if (std::string_view(name) == HDV_EXT_CALIBRATION && method != 0) {
+      calibration_ = {sizeof calibration_, 0, instructions.c_str(), &calibrate};
+      return &calibration_;
+    }
+    return constantExtension(name);
+  }
+
+ protected:
+  const codec::Wire& format() const { return wire_; }  ///< valid after the parameters were read
+
+ private:
+  /// Returns an extension that is the same for all arms of this class; null if it is none of them.
+  static const void* constantExtension(const char* name) {
     if (std::string_view(name) == HDV_EXT_CUT) {
       static constexpr hdv_ext_cut kCut{sizeof(hdv_ext_cut), 0, &cut};
       return &kCut;
@@ -145,17 +158,9 @@ class Arm : public Device, public Parameters {
       static constexpr hdv_ext_trouble kTrouble{sizeof(hdv_ext_trouble), 0, &why};
       return &kTrouble;
     }
-    if (std::string_view(name) == HDV_EXT_CALIBRATION && method != 0) {
-      calibration_ = {sizeof calibration_, 0, instructions.c_str(), &calibrate};
-      return &calibration_;
-    }
     return nullptr;
   }
 
- protected:
-  const codec::Wire& format() const { return wire_; }  ///< valid after the parameters were read
-
- private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
   /// Makes everything that depends only on the parameters. Throws std::invalid_argument with all problems, one per
