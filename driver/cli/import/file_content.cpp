@@ -36,10 +36,8 @@ constexpr Kind kKinds[] = {
     {"glTF", "a mesh (glTF)", "", "export the mesh as .obj, .stl or .ply"},
 };
 
-std::string firstBytes(const std::string& file) {
-  const auto bytes = readBeginning(file, 512);
-  if (!bytes) return "";
-  return bytes->starts_with("\xef\xbb\xbf") ? bytes->substr(3) : *bytes;
+std::string withoutMark(const std::string& bytes) {
+  return bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes;
 }
 
 /// Returns true for the first line of an IGES file: 80 columns, the last of which are S and the number 1.
@@ -80,7 +78,10 @@ bool isBinaryStl(const std::string& bytes, const std::string& file) {
 
 std::string misnamed(const std::string& file) {
   constexpr Kind kIges{"", "an IGES file", ".iges .igs ", ""};
-  const std::string bytes = firstBytes(file), ending = endingOf(file);
+  const auto read = readBeginning(file, 512);
+  if (!read) return "";
+  if (read->empty()) return file + ": is empty\n  fix: export or download it anew";
+  const std::string bytes = withoutMark(*read), ending = endingOf(file);
   const std::string words = bytes.substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
                                    [&](const Kind& kind) { return words.starts_with(kind.begins); });

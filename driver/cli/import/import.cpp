@@ -265,6 +265,13 @@ void addPlacementOptions(const Command& command, ImportArguments& options) {
       .oneOf({"auto", "normal", "reversed"});
 }
 
+void addCadOptions(const Command& command, ImportArguments& options) {
+  command.addFlag("--json", options.json, "triangles and CAD: write the report as JSON");
+  command.addFlag("--check", options.cad.check, "CAD: write nothing; print what would be lost");
+  command.addOption("--time", options.cad.time_s, "CAD: longest time [s]; default: 600").within(1.0, 1e6);
+  command.addOption("--memory", options.cad.memory_mb, "CAD: most memory [MB]; default: 4096").within(64.0, 1e7);
+}
+
 }  // namespace
 
 void addImport(const Command& app, int& exit_code) {
@@ -287,10 +294,7 @@ void addImport(const Command& app, int& exit_code) {
       .addOption("--smooth-angle", options->smooth_angle,
                  "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
       .within(0.0, 180.0);
-  command.addFlag("--json", options->json, "triangles and CAD: write the report as JSON");
-  command.addFlag("--check", options->cad.check, "CAD: write nothing; print what would be lost");
-  command.addOption("--time", options->cad.time_s, "CAD: longest time [s]; default: 600").within(1.0, 1e6);
-  command.addOption("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096").within(64.0, 1e7);
+  addCadOptions(command, *options);
   addMedialOptions(command, *options);
   command
       .addOption("--scene", options->scene,

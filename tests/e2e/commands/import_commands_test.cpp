@@ -68,7 +68,8 @@ TEST_F(ImportCommands, ImportKeepsItsInputsAndFilesOfOtherKinds) {
 
 TEST_F(ImportCommands, ImportSaysWhereAPatchFileIsWrong) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "the file ends too early; expected the number of patches"},
+      {"", "bad.bpt: is empty"},
+      {"# a comment alone\n", "the file ends too early; expected the number of patches"},
       {"1\n3 3\n0 0 0\n", "the file ends too early; expected a coordinate"},
       {"1\n99 3\n", "bad.bpt:2:1: '99' stands here; expected a degree"},
       {"1\n1 1\n0 0 0\n0 x 2\n", "bad.bpt:4:3: 'x' stands here; expected a coordinate"},
@@ -276,6 +277,8 @@ TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
   const auto told = [&](const std::string& words) { return run("import " + words).text; };
   EXPECT_TRUE(has(told("nothere.stl"), "nothere.stl: there is no such file"));
   EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
+  for (const char* empty : {"empty.step", "empty.igs", "empty.brep", "empty.stl"})
+    EXPECT_TRUE(has(told(put(empty, "")), std::string(empty) + ": is empty")) << empty;
   std::string binary(84 + 50, '\0');
   binary[80] = 1;  // the number of its triangles
   EXPECT_TRUE(has(told(put("binary.obj", binary)), "is a mesh (binary STL), by its first bytes"));
