@@ -19,10 +19,14 @@ constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< [ns] a device that takes n
 constexpr unsigned kControlTimeout = 1000;       ///< [ms] longest time of a control transfer
 constexpr Nanoseconds kCancelled = 500'000'000;  ///< [ns] longest wait; the kernel returns cancelled transfers earlier
 
-std::string idText(const Address& address) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%04x:%04x", address.vendor, address.product);
-  return text;
+/// Returns the port of a device, such as "1-2.3".
+std::string portOf(libusb_device* device) {
+  constexpr int kDeepest = 7;  // ports of hubs behind each other, by the USB 3 specification
+  std::array<uint8_t, kDeepest> ports{};
+  const int count = libusb_get_port_numbers(device, ports.data(), kDeepest);
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i == 0 ? "-" : ".") + std::to_string(ports[static_cast<size_t>(i)]);
+  return text.empty() ? "" : std::to_string(libusb_get_bus_number(device)) + text;
 }
 
 Status statusOf(libusb_transfer_status status) {
@@ -65,12 +69,12 @@ class BulkTransport final : public Transport {
       return Error{
           "libusb cannot be started\n  the arm stays off\n  fix: run hapticd doctor, which says what is missing"};
     Identity identity;
-    std::string trouble;
+    std::string refused, others;
     libusb_device** all = nullptr;
     const ssize_t count = libusb_get_device_list(context_, &all);
-    for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) tryOne(all[i], address, identity, trouble);
+    for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) tryOne(all[i], address, identity, refused, others);
     if (count >= 0) libusb_free_device_list(all, 1);
-    if (handle_ == nullptr) return Error{missing(address, trouble)};
+    if (handle_ == nullptr) return Error{notOpened("USB", address, refused, others)};
     // A halted endpoint stays halted after close(), so the host must clear the halt. It does so only after a halt,
     // because clearing also resets the data toggles.
     for (const uint8_t endpoint : {wire.endpoint_in, wire.endpoint_out})
@@ -78,7 +82,7 @@ class BulkTransport final : public Transport {
     halted_ = false;
     if (const Status status = submitReads(wire); status != Status::kOk) {
       close();
-      return Error{"USB device " + idText(address) + " accepts no transfers; unplug it and plug it in again"};
+      return Error{"USB device " + textOf(address) + " accepts no transfers; unplug it and plug it in again"};
     }
     endpoint_out_ = wire.endpoint_out;
     return identity;
@@ -157,18 +161,20 @@ class BulkTransport final : public Transport {
     std::array<uint8_t, kBuffer> bytes;
   };
 
-  void tryOne(libusb_device* device, const Address& address, Identity& identity, std::string& trouble) {
+  void tryOne(libusb_device* device, const Address& address, Identity& identity, std::string& refused,
+              std::string& others) {
     libusb_device_descriptor about{};
     if (libusb_get_device_descriptor(device, &about) != 0) return;
     if (about.idVendor != address.vendor || about.idProduct != address.product) return;
+    const std::string port = portOf(device);
     if (const int error = libusb_open(device, &handle_); error != 0) {
       handle_ = nullptr;
-      trouble = std::string("cannot be opened: ") + libusb_strerror(static_cast<libusb_error>(error));
+      refused = std::string("cannot be opened: ") + libusb_strerror(static_cast<libusb_error>(error));
       return;
     }
     const std::string serial = text(about.iSerialNumber);
-    if (!address.serial.empty() && serial != address.serial) {
-      trouble = "not found: another device with this id has the serial number " + serial;
+    others += (others.empty() ? "" : ", ") + textOf(serial, port);
+    if ((!address.serial.empty() && serial != address.serial) || (!address.port.empty() && port != address.port)) {
       libusb_close(handle_);
       handle_ = nullptr;
       return;
@@ -176,7 +182,7 @@ class BulkTransport final : public Transport {
     (void)libusb_set_auto_detach_kernel_driver(handle_, 1);
     interface_ = std::max(0, address.interface);
     if (const int error = libusb_claim_interface(handle_, interface_); error != 0) {
-      trouble = std::string("is in use: ") + libusb_strerror(static_cast<libusb_error>(error));
+      refused = std::string("is in use: ") + libusb_strerror(static_cast<libusb_error>(error));
       libusb_close(handle_);
       handle_ = nullptr;
       return;
@@ -192,18 +198,6 @@ class BulkTransport final : public Transport {
     if (index == 0) return "";
     const int count = libusb_get_string_descriptor_ascii(handle_, index, bytes.data(), static_cast<int>(bytes.size()));
     return count > 0 ? std::string(bytes.begin(), bytes.begin() + count) : "";
-  }
-
-  static std::string missing(const Address& address, const std::string& trouble) {
-    const std::string who =
-        "USB device " + idText(address) + (address.serial.empty() ? "" : " serial " + address.serial);
-    if (trouble.empty())
-      return who +
-             " not found\n  no device with this id is plugged in\n  the arm stays off\n  fix: plug it in and switch it "
-             "on; hapticd device list shows what is there";
-    return who + " " + trouble +
-           "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, plug "
-           "it in again; hapticd doctor says what is missing";
   }
 
   /// Returns whether the descriptors of the device describe this endpoint as an interrupt endpoint.

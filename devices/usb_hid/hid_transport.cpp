@@ -29,12 +29,6 @@ std::string narrow(const wchar_t* text) {
   return out;
 }
 
-std::string idText(const Address& address) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%04x:%04x", address.vendor, address.product);
-  return text;
-}
-
 /// Returns the kernel's number of a HID device, such as "0003:1234:0006.0007". Its last part is new each time the
 /// device is plugged in.
 std::string epochOf(const std::string& node) {
@@ -42,6 +36,14 @@ std::string epochOf(const std::string& node) {
   const auto link = std::filesystem::read_symlink(
       "/sys/class/hidraw/" + std::filesystem::path(node).filename().string() + "/device", error);
   return error ? node : link.filename().string();
+}
+
+/// Returns the USB port of a HID device, such as "1-2.3"; "" for one that is not on USB.
+std::string portOf(const std::string& node) {
+  std::error_code error;
+  const auto link =
+      std::filesystem::read_symlink("/sys/class/hidraw/" + std::filesystem::path(node).filename().string(), error);
+  return error ? "" : usbPortOf(link.string());
 }
 
 class HidTransport final : public Transport {
@@ -56,18 +58,20 @@ class HidTransport final : public Transport {
     const std::lock_guard lock(libraryMutex());
     numbered_ = wire.output.id >= 0;
     hid_device_info* all = hid_enumerate(address.vendor, address.product);
-    std::string refused, serials;
+    std::string refused, others;
     Identity identity;
     for (hid_device_info* at = all; at != nullptr && handle_ == nullptr; at = at->next) {
       const std::string serial = narrow(at->serial_number);
-      serials += (serials.empty() ? "" : ", ") + serial;
+      const std::string port = portOf(at->path);
+      others += (others.empty() ? "" : ", ") + textOf(serial, port);
       if (!address.serial.empty() && address.serial != serial) continue;
+      if (!address.port.empty() && address.port != port) continue;
       if (address.interface >= 0 && at->interface_number >= 0 && at->interface_number != address.interface) continue;
       if (!takeAlone(at->path, refused)) continue;
       node_ = at->path;
       handle_ = hid_open_path(at->path);
       if (handle_ == nullptr) {
-        refused = std::string(at->path) + ": " + std::strerror(errno);
+        refused = "cannot be opened: " + std::string(at->path) + ": " + std::strerror(errno);
         release();
         continue;
       }
@@ -77,7 +81,7 @@ class HidTransport final : public Transport {
     }
     hid_free_enumeration(all);
     if (handle_ != nullptr) return identity;
-    return Error{missing(address, refused, serials)};
+    return Error{notOpened("HID", address, refused, others)};
   }
 
   void close() noexcept override {
@@ -121,29 +125,14 @@ class HidTransport final : public Transport {
     lock_ = ::open(node, O_RDWR | O_CLOEXEC | O_NOCTTY);
     const bool mine = lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
     if (mine || (lock_ >= 0 && errno != EWOULDBLOCK)) return true;
-    refused = std::string(node) + ": " + (lock_ >= 0 ? "in use by another program" : std::strerror(errno));
+    refused = lock_ >= 0 ? "is in use by another program: " + std::string(node)
+                         : "cannot be opened: " + std::string(node) + ": " + std::strerror(errno);
     release();
     return false;
   }
   void release() noexcept {
     if (lock_ >= 0) ::close(lock_);
     lock_ = -1;
-  }
-
-  static std::string missing(const Address& address, const std::string& refused, const std::string& serials) {
-    const std::string who =
-        "HID device " + idText(address) + (address.serial.empty() ? "" : " serial " + address.serial);
-    if (!refused.empty())
-      return who + " cannot be opened: " + refused +
-             "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, "
-             "plug "
-             "it in again; hapticd doctor says what is missing";
-    if (!serials.empty())
-      return who + " not found: the devices with this id have the serial numbers " + serials +
-             "\n  the arm stays off\n  fix: correct usb.serial in the device file";
-    return who +
-           " not found\n  no device with this id is plugged in\n  the arm stays off\n  fix: plug it in and switch it "
-           "on; hapticd device list shows what is there";
   }
 
   hid_device* handle_ = nullptr;

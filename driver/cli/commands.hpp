@@ -10,7 +10,7 @@ using AddCommand = void(const Command& app, int& exit_code);
 
 // clang-format off: one command per line
 AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceCheck, addDeviceControls, addDeviceDecode,
-    addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
+    addDeviceKinematics, addDeviceList, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
 /// A subcommand ("device calibrate") must come after its parent ("device"), because it looks the parent up.
@@ -25,6 +25,7 @@ constexpr AddCommand* kCommands[] = {
     addDeviceControls,
     addDeviceDecode,
     addDeviceKinematics,
+    addDeviceList,
     addDeviceNew,
     addDeviceRecord,
     addDeviceTwin,

@@ -18,9 +18,10 @@ inline constexpr const char* kKinds[] = {"phantom", "delta", "chain"};
 inline constexpr const char* kMethods[] = {"none", "device", "pose"};
 inline constexpr const char* kLoaders[] = {"none", "falcon"};
 
-/// The values of the parameters. The device class of each such arm derives from this class.
+/// The values of the parameters. The device class of each such arm derives from this class. Only USB has id, serial,
+/// port, interface, firmware and loader.
 struct Parameters : MechanismParameters {
-  std::string id, serial, wire, instructions, firmware;  // only USB has id, serial, interface, firmware, loader
+  std::string id, serial, port, wire, instructions, firmware;
   int interface = -1, method = 0, loader = 0;
   std::vector<double> pose, max_torque;
   double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
@@ -42,6 +43,9 @@ struct ParameterTable {
                 HSP_P_REQUIRED),
         F::text("usb.serial", &T::serial, "",
                 "Serial number of the device. Without it, the first such device that is free is used."),
+        F::text("usb.port", &T::port, "",
+                "Port at which the device is plugged in, such as 1-2.3, as hapticd device list prints it. It "
+                "distinguishes two devices without serial numbers."),
         F::integer("usb.interface", &T::interface, "", -1, 255, -1,
                    "Number of the USB interface; -1 means any interface for HID, and interface 0 for bulk."),
         F::choice(
@@ -123,6 +127,10 @@ inline Address addressOf(const Parameters& p) {
   address.product = static_cast<uint16_t>(product);
   address.interface = p.interface;
   address.serial = p.serial;
+  address.port = p.port;
+  if (!p.port.empty() && !isUsbPort(p.port))
+    throw std::invalid_argument("usb.port: \"" + p.port +
+                                "\", expected bus and ports such as \"1-2.3\": hapticd device list prints them");
   return address;
 }
 

@@ -10,6 +10,7 @@
 #include "base/result.hpp"
 #include "codec/wire.hpp"
 #include "hapticd/device_silence.h"
+#include "wire_arm/address.hpp"
 
 namespace hapticd::wire_arm {
 
@@ -20,14 +21,6 @@ enum class Status : uint8_t {
   kStalled,  ///< the endpoint refuses transfers
   kAbsent,   ///< on a bus without plugs: no board answers at the address
   kFailed,   ///< another error of the bus; often the first sign that the device is unplugged
-};
-
-/// Which device to open.
-struct Address {
-  uint16_t vendor = 0, product = 0;
-  int interface = -1;  ///< number of the USB interface, -1 for any
-  std::string serial;  ///< serial number; if empty, the first device that is free
-  bool operator==(const Address&) const = default;
 };
 
 /// Facts about a device that are read when it is opened.

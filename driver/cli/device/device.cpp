@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device list|info`: prints modules, device files and what is plugged in, or the facts of one arm.
-#include <algorithm>
+/// `hapticd device info`: prints the facts of one arm.
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,7 +13,6 @@
 #include "diagnostics/device/arm_reach.hpp"
 #include "diagnostics/device/device_trial.hpp"
 #include "diagnostics/device/enable_button.hpp"
-#include "diagnostics/machine/device_bus.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "world/arm_force.hpp"
@@ -25,72 +23,6 @@ using namespace diagnostics;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void printShippedFiles() {
-  const auto one = host::shippedFile(scene::kDefaultDevice);
-  if (!one) return;
-  std::printf("\ndevice files in %s\n", one->parent_path().c_str());
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(one->parent_path()))
-    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) {
-    const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
-    if (loaded.device)
-      std::printf("  %-28s %s, module %s\n", file.filename().c_str(), loaded.device->name.c_str(),
-                  loaded.device->module.c_str());
-    else
-      std::printf("  %-28s has problems: hapticd check %s\n", file.filename().c_str(),
-                  shellWord(file.string()).c_str());
-  }
-}
-
-void printBuses() {
-  std::printf("\nplugged in\n");
-  const std::vector<BusDevice> found = scanBuses();
-  for (const BusDevice& device : found) {
-    std::printf("  %-14s %-10s %s%s%s\n", device.bus.c_str(), device.id.c_str(), device.product.c_str(),
-                device.module.empty() ? "" : ", module ", device.module.c_str());
-    if (!device.module.empty() && !device.may_open)
-      std::printf(
-          "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug the device in "
-          "again; hapticd doctor says more\n",
-          device.node.c_str());
-  }
-  if (found.empty()) std::printf("  no known haptic device (USB and VME scanned)\n");
-}
-
-Json listJson() {
-  Json modules = classesJson(catalog().files(host::Kind::kDevice), host::Kind::kDevice), files = Json::array(),
-       found = Json::array();
-  if (const auto one = host::shippedFile(scene::kDefaultDevice))
-    for (const auto& entry : std::filesystem::directory_iterator(one->parent_path())) {
-      if (entry.path().extension() != ".yaml") continue;
-      const scene::LoadedDevice loaded = scene::loadDevice(entry.path(), catalog());
-      files.push_back({{"file", entry.path().string()}, {"ok", loaded.device.has_value()}});
-      if (loaded.device) files.back().update({{"name", loaded.device->name}, {"module", loaded.device->module}});
-    }
-  for (const BusDevice& device : scanBuses())
-    found.push_back({{"bus", device.bus},
-                     {"id", device.id},
-                     {"product", device.product},
-                     {"module", device.module.empty() ? Json() : Json(device.module)},
-                     {"may_open", device.may_open},
-                     {"node", device.node}});
-  return {{"modules", modules["plugins"]}, {"unusable", modules["unusable"]}, {"files", files}, {"plugged_in", found}};
-}
-
-int list() {
-  const auto files = catalog().files(host::Kind::kDevice);
-  std::printf("modules\n");
-  printClasses(files, host::Kind::kDevice, false);
-  printUnusable(files);
-  warnOfAbsentFolders();
-  if (files.empty()) std::printf("  none\n%s\n", searchedText(catalog().searchPath().devices).c_str());
-  printShippedFiles();
-  printBuses();
-  return kWorked;
-}
 
 /// Prints the limits of an arm. @param most [N] device.max_force of the device file; 0 if it is not given
 void printLimits(const scene::Limits& limits, double most) {
@@ -274,19 +206,12 @@ void addDevice(const Command& app, int& exit_code) {
   command.requireSubcommand();
   command.footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
 
-  const Command list_command =
-      command.addSubcommand("list", "List device modules, device files, and known devices on the buses.");
-  auto json = std::make_shared<bool>(false);
-  list_command.addFlag("--json", *json, "print JSON");
-  list_command.footer("Example:\n  hapticd device list");
-  list_command.callback([json, &exit_code] { exit_code = *json ? printJson(listJson()) : list(); });
-
   auto file = std::make_shared<std::string>();
   const Command info_command =
       command.addSubcommand("info", "Show the facts of one arm. Opens the arm if it is plugged in, but moves nothing.");
   info_command.addOption("file", *file, "device file (YAML)").required();
   info_command.footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
-  auto parameters = std::make_shared<bool>(false);
+  auto parameters = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
   info_command.addFlag("--parameters", *parameters, "also print every parameter of the module");
   info_command.addFlag("--json", *json, "print JSON");
   info_command.callback([file, parameters, json, &exit_code] { exit_code = info(*file, *parameters, *json); });

@@ -33,6 +33,8 @@ with tempfile.TemporaryDirectory() as folder:
     check("one serial number does not tell the other arm", WORDS in told(known, 'id: "1234:0006"'))
     check("the same one twice is no two arms", WORDS in told(known, known))
     check("two serial numbers do", WORDS not in told(known, 'id: "1234:0006", serial: B2'))
+    check("or two ports", WORDS not in told('id: "1234:0006", port: 1-2', 'id: "1234:0006", port: 1-2.1'))
+    check("a port is bus and ports", 'usb.port: "2", expected bus and ports such as "1-2.3"' in told('id: "1234:0006", port: "2"', known))
     check("and so do two ids", WORDS not in told('id: "1234:0006"', 'id: "1234:0007"'))
     check("or two interfaces", WORDS not in told('id: "1234:0006", interface: 0', 'id: "1234:0006", interface: 1'))
 finish()

@@ -24,7 +24,8 @@ bool mayBeOne(const scene::Device& a, const scene::Device& b) {
   const double interface = numberIn(a.parameters, "usb.interface", -1);
   const double another = numberIn(b.parameters, "usb.interface", -1);
   if (interface >= 0 && another >= 0 && interface != another) return false;
-  return serial.empty() || second.empty() || serial == second;
+  const auto differ = [](const std::string& x, const std::string& y) { return !x.empty() && !y.empty() && x != y; };
+  return !differ(serial, second) && !differ(textOf(a, "usb.port"), textOf(b, "usb.port"));
 }
 
 }  // namespace
@@ -35,11 +36,12 @@ document::Problems likeArms(const scene::Scene& scene) {
     for (size_t j = 0; j < i; ++j) {
       const scene::Device &first = scene.devices[j], &second = scene.devices[i];
       if (!mayBeOne(first, second)) continue;
-      document::report(warnings, givenIn(second.parameters, "usb.id")->place, "parameters.usb.serial",
-                       fmt::format("the same USB device may be {} or {}, so the two hands may change places from run "
-                                   "to run; expected a file for each arm, with its usb.serial: hapticd device list "
-                                   "shows the serial numbers",
-                                   first.name, second.name));
+      document::report(
+          warnings, givenIn(second.parameters, "usb.id")->place, "parameters.usb.serial",
+          fmt::format("the same USB device may be {} or {}, so the two hands may change places from run "
+                      "to run; expected a file for each arm, with its usb.serial or, if they have no serial "
+                      "numbers, its usb.port: hapticd device list prints both",
+                      first.name, second.name));
       break;
     }
   return warnings;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 #include "base/os.hpp"
@@ -13,19 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Known public vendor and product ids; a product of "" stands for every product of the vendor.
-struct KnownDevice {
-  const char *vendor, *product, *name, *module;
-};
-constexpr KnownDevice kKnown[] = {
-    {"0403", "cb48", "Novint Falcon", "usb_bulk"},
-    {"1234", "0006", "WoodenHaptics (mbed, HID)", "usb_hid"},
-    {"16c0", "0486", "WoodenHaptics / Polhem (Teensy, HID)", "usb_hid"},
-    {"1209", "0005", "hapticd interface board (HID)", "usb_hid"},
-    {"1209", "0006", "hapticd interface board (bulk)", "usb_bulk"},
-    {"2988", "", "3D Systems Touch (closed protocol: no module)", ""},
-    {"1451", "", "Force Dimension (closed protocol: no module)", ""},
-};
+/// Devices with public vendor and product ids.
+const std::vector<KnownDevice>& usual() {
+  static const std::vector<KnownDevice> all = {
+      {"0403:cb48", "Novint Falcon", "usb_bulk"},
+      {"1234:0006", "WoodenHaptics (mbed, HID)", "usb_hid"},
+      {"16c0:0486", "WoodenHaptics / Polhem (Teensy, HID)", "usb_hid"},
+      {"1209:0005", "hapticd interface board (HID)", "usb_hid"},
+      {"1209:0006", "hapticd interface board (bulk)", "usb_bulk"},
+      {"2988:", "3D Systems Touch (closed protocol: no module)", ""},
+      {"1451:", "Force Dimension (closed protocol: no module)", ""},
+  };
+  return all;
+}
 
 std::string lineOf(const fs::path& file) {
   return os::firstLine(file.string());
@@ -40,22 +41,40 @@ std::vector<fs::path> sorted(const fs::path& dir) {
   return all;
 }
 
-void scanUsb(const fs::path& sys, const fs::path& dev, std::vector<BusDevice>& found) {
+/// Returns whether an id that the kernel gives, which is in lower case, is the one of a known device.
+bool fits(const KnownDevice& known, const std::string& id) {
+  std::string wanted = known.id;
+  std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](unsigned char c) { return std::tolower(c); });
+  return wanted.ends_with(':') ? id.starts_with(wanted) : id == wanted;
+}
+
+const KnownDevice* find(const std::vector<KnownDevice>& all, const std::string& id) {
+  const auto at = std::find_if(all.begin(), all.end(), [&](const KnownDevice& known) { return fits(known, id); });
+  return at == all.end() ? nullptr : &*at;
+}
+
+/// Returns the node of a USB device; "" if its numbers cannot be read.
+std::string usbNode(const fs::path& device) {
+  int bus = 0, number = 0;
+  char node[32] = "";
+  if (std::sscanf(lineOf(device / "busnum").c_str(), "%d", &bus) == 1 &&
+      std::sscanf(lineOf(device / "devnum").c_str(), "%d", &number) == 1)
+    std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", bus, number);
+  return node;
+}
+
+void scanUsb(const std::vector<KnownDevice>& own, const fs::path& sys, const fs::path& dev,
+             std::vector<BusDevice>& found) {
   for (const fs::path& device : sorted(sys / "bus/usb/devices")) {
-    const std::string vendor = lineOf(device / "idVendor"), product = lineOf(device / "idProduct");
-    for (const KnownDevice& known : kKnown) {
-      if (vendor != known.vendor || (known.product[0] != '\0' && product != known.product)) continue;
-      int bus = 0, number = 0;
-      char node[32] = "";
-      if (std::sscanf(lineOf(device / "busnum").c_str(), "%d", &bus) == 1 &&
-          std::sscanf(lineOf(device / "devnum").c_str(), "%d", &number) == 1)
-        std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", bus, number);
-      const fs::path path = dev / node;
-      const std::string own = lineOf(device / "product");
-      found.push_back({"usb " + device.filename().string(), vendor + ":" + product,
-                       own.empty() ? known.name : std::string(known.name) + " \"" + own + "\"", known.module,
-                       path.string(), access(path.c_str(), R_OK | W_OK) == 0});
-    }
+    const std::string id = lineOf(device / "idVendor") + ":" + lineOf(device / "idProduct");
+    const KnownDevice* known = find(own, id);
+    if (known == nullptr) known = find(usual(), id);
+    if (known == nullptr) continue;
+    const fs::path node = dev / usbNode(device);
+    const std::string port = device.filename().string(), product = lineOf(device / "product");
+    found.push_back({"usb " + port, id, lineOf(device / "serial"), port,
+                     product.empty() ? known->name : known->name + " \"" + product + "\"", known->module, node.string(),
+                     access(node.c_str(), R_OK | W_OK) == 0});
   }
 }
 
@@ -64,16 +83,16 @@ void scanNodes(const fs::path& dev, const fs::path& dir, const std::string& pref
   for (const fs::path& node : sorted(dir)) {
     const std::string name = node.filename().string();
     if (name.compare(0, prefix.size(), prefix) == 0)
-      found.push_back({fs::relative(node, dev).string(), "", product, module, node.string(),
+      found.push_back({fs::relative(node, dev).string(), "", "", "", product, module, node.string(),
                        access(node.c_str(), R_OK | W_OK) == 0});
   }
 }
 
 }  // namespace
 
-std::vector<BusDevice> scanBuses(const fs::path& sys, const fs::path& dev) {
+std::vector<BusDevice> scanBuses(const std::vector<KnownDevice>& own, const fs::path& sys, const fs::path& dev) {
   std::vector<BusDevice> found;
-  scanUsb(sys, dev, found);
+  scanUsb(own, sys, dev, found);
   scanNodes(dev, dev / "bus/vme", "m", "VME master window", "vme", found);
   return found;
 }

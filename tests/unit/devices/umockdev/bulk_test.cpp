@@ -21,9 +21,9 @@ constexpr const char* kFile = HAPTICD_SOURCE_DIR "/config/devices/premium15-bulk
 
 class BulkTest : public PlayedLinkTest {
  protected:
-  std::unique_ptr<Link> make(const std::string& serial = "") {
+  std::unique_ptr<Link> make(const std::string& serial = "", const std::string& port = "") {
     LinkSettings s;
-    s.address.vendor = 0x1209, s.address.product = 0x0006, s.address.serial = serial;
+    s.address.vendor = 0x1209, s.address.product = 0x0006, s.address.serial = serial, s.address.port = port;
     s.session.calibration = Calibration::kDevice;
     s.session.health.least_rate = 0;  // a busy machine may well be slow
     s.log = [](int, const std::string&) {};
@@ -68,6 +68,19 @@ TEST_F(BulkTest, FindsTheArmByItsSerialNumberAmongTwo) {
   const auto missing = make("C3")->open();
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().find("serial C3"), std::string::npos) << missing.error();
+}
+
+TEST_F(BulkTest, FindsTheArmByItsPortAmongTwo) {
+  PlayedUsb a(testbed, 0, left), b(testbed, 1, right);
+  a.plug();
+  b.plug();
+  const auto opened = make("", "1-2")->open();
+  ASSERT_TRUE(opened) << opened.error();
+  EXPECT_EQ(opened->serial, "B2");
+  const auto missing = make("", "1-4")->open();
+  ASSERT_FALSE(missing);
+  for (const char* words : {"1209:0006 at port 1-4 not found", "serial A1 at port 1-1", "serial B2 at port 1-2"})
+    EXPECT_NE(missing.error().find(words), std::string::npos) << missing.error();
 }
 
 TEST_F(BulkTest, UnpluggedIsNamedAndTheArmFoundAgain) {

@@ -14,9 +14,9 @@ namespace {
 
 class HidrawTest : public PlayedLinkTest {
  protected:
-  std::unique_ptr<Link> make(const std::string& serial) {
+  std::unique_ptr<Link> make(const std::string& serial, const std::string& port = "") {
     LinkSettings s;
-    s.address.vendor = 0x1234, s.address.product = 0x0006, s.address.serial = serial;
+    s.address.vendor = 0x1234, s.address.product = 0x0006, s.address.serial = serial, s.address.port = port;
     s.session.calibration = Calibration::kNone;
     s.session.health.least_rate = 0;  // a busy machine may well be slow
     s.log = [](int, const std::string&) {};
@@ -46,6 +46,24 @@ TEST_F(HidrawTest, FindsTheArmByItsSerialNumberAmongTwo) {
   const auto missing = third->open();
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().find("A1"), std::string::npos) << missing.error();
+}
+
+TEST_F(HidrawTest, FindsTheArmByItsPortIfItHasNoSerialNumber) {
+  emulator::PlayedHidraw a(testbed, 0, left, ""), b(testbed, 1, right, "");
+  a.plug();
+  b.plug();
+  auto link = make("", "2-2");
+  const auto opened = link->open();
+  ASSERT_TRUE(opened) << opened.error();
+  ASSERT_TRUE(link->start());
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return b.pushed.load(); }));
+  EXPECT_FALSE(a.pushed);
+  const auto missing = make("", "2-4")->open();
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().find("at port 2-4 not found; devices with this id: no serial number at port 2-1, no serial "
+                                 "number at port 2-2"),
+            std::string::npos)
+      << missing.error();
 }
 
 TEST_F(HidrawTest, AnArmInUseIsNotTakenTwice) {
