@@ -16,7 +16,8 @@ fs::path fileOf(const fs::path& folder, const Address& address, const Identity& 
   char ids[16];
   std::snprintf(ids, sizeof ids, "%04x-%04x-", address.vendor, address.product);
   std::string name = ids;
-  for (const char c : identity.serial + address.port)  // these characters come from the device, and must not change the folder
+  // These characters come from the device, and must not change the folder.
+  for (const char c : identity.serial + address.port)
     name += (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ? c : '_';
   return folder / (name + ".calibration");
 }
