@@ -140,7 +140,7 @@ double usual(std::string_view id) {
 
 MedialFile MatDeformable::readFile() const {
   try {
-    return readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
+    return stiffened(stiffness_scale_, readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_}));
   } catch (const ModelFileError& error) {
     for (const std::string& odd : error.odd) writeLog(HSP_LOG_WARNING, "geometry: " + odd);
     throw;
@@ -212,11 +212,12 @@ medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point
 
 /// Returns what gives the stiffness of the body, such as "the file".
 std::string MatDeformable::sourceOf(const MedialFile& file) const {
-  if (geometry_.ends_with(".ma")) return "the scene";
-  if (!file.layered) return "the file";
-  char text[64];
+  char text[96];
   std::snprintf(text, sizeof text, "young for a flat tip of radius %.4g mm", 1e3 * probe_radius_);
-  return text;
+  const std::string source = geometry_.ends_with(".ma") ? "the scene" : file.layered ? text : "the file";
+  if (stiffness_scale_ == 1) return source;
+  std::snprintf(text, sizeof text, ", times %.4g,", stiffness_scale_);
+  return source + text;
 }
 
 /// Writes a line for each material at level debug, and a hint if a hand feels another stiffness than the file says.

@@ -98,6 +98,8 @@ class MatDeformable final : public Shape {
     return std::array{
         F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300,
                 "stiffness of a medial mesh whose file gives none (.ma)"),
+        F::real("stiffness_scale", &T::stiffness_scale_, "", 1e-3, 1e3, 1,
+                "factor on every stiffness, whatever gives it; damping and mass stay"),
         F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5,
                 "damping of a medial mesh whose file gives none (.ma). A file that gives more than ten times this "
                 "value is refused (up to 5 is always allowed)"),
@@ -218,7 +220,7 @@ class MatDeformable final : public Shape {
   double tolerance_ = 1e-8, split_ = 0.5, shear_offset_ = 0.05, damping_scale_ = 5e-3;
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
   double contact_ratio_ = 3, relaxation_share_ = 0, relaxation_time_ = 0.5;
-  double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
+  double stiffness_ = 300, stiffness_scale_ = 1, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
   double shear_distance_ = 0, probe_radius_ = 5e-3, tip_radius_ = 0;
   int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};

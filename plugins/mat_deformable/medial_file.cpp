@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
 
 #include "document/suggestion.hpp"
@@ -344,6 +345,18 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
   if (file.grid) file.swings = some(file.grid->mass), file.damps = some(file.grid->damping);
   if (file.mesh) file.swings = some(file.mesh->mass), file.damps = some(file.mesh->damping);
   return file;
+}
+
+MedialFile stiffened(double factor, MedialFile file) {
+  std::vector<double>& all = file.grid ? file.grid->stiffness : file.mesh->stiffness;
+  for (double& one : all) one *= factor;
+  const double most = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  if (most <= kMost) return file;
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "stiffness_scale: a stiffness would be %.4g N/m, expected at most 1e6 N/m: give a smaller factor",
+                most);
+  throw std::invalid_argument(text);
 }
 
 MedialFile grownBy(double radius, MedialFile file) {

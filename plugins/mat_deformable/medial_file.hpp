@@ -46,4 +46,8 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
 /// consists are larger by this radius.
 MedialFile grownBy(double radius, MedialFile file);
 
+/// [main] Returns a body that is `factor` times as stiff. Damping and mass stay. @throws std::invalid_argument if a
+/// stiffness becomes larger than a file may give
+MedialFile stiffened(double factor, MedialFile file);
+
 }  // namespace hapticd
