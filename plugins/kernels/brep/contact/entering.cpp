@@ -13,7 +13,8 @@ using contact::Foot;
 using contact::Sides;
 using Eigen::Vector3d;
 
-constexpr double kMet = 1e-8;  ///< [m] a face that is nearer than this has been reached
+constexpr double kMet = 1e-8;         ///< [m] a face that is nearer than this has been reached
+constexpr double kLeastShare = 0.25;  ///< clearWay() goes at least this share of the distance to an uncertain foot
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr double kFlat = 0.25;  ///< clearWay() goes no farther than this share of the radius of curvature
 
@@ -60,8 +61,9 @@ double clearWay(const Model& model, const Nearest& found, const Foot& foot, cons
   constexpr double kSafe = 4;  // the second derivative is bounded three times as far as needed
   const double height = foot.distance - 0.5 * kMet, side = foot.depth > 0 ? -1 : 1;
   if (!(height > 0)) return 0;
+  if (!found.proved) return std::clamp(std::sqrt(found.open2) - 0.5 * kMet, kLeastShare * height, height);
   const double curvature = curvatureToward(model, found.hit, side);
-  const double reach = found.proved ? std::min(found.others - 0.5 * kMet, kFlat / curvature - foot.distance) : 0;
+  const double reach = std::min(found.others - 0.5 * kMet, kFlat / curvature - foot.distance);
   if (!(reach > height)) return height;
   const double slope = way.dot(at - foot.point) / foot.distance;
   const double bend = kSafe * curvature, root = std::sqrt(slope * slope + 2 * bend * height);

@@ -311,6 +311,7 @@ double Search::othersOf(const Run& run) const noexcept {
 void Search::finish(Run& run) const noexcept {
   Nearest& best = run.best;
   best.others = othersOf(run);
+  best.open2 = run.open2;
   best.proved = best.found() && !best.exhausted && !(run.open2 < best.hit.d2);
 }
 

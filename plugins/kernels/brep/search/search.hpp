@@ -30,6 +30,9 @@ struct Nearest {
   /// [m] Lower bound of the distance from the probe to every other element. If `hit` is on an edge, the faces beside it
   /// are not among these.
   double others = 0;
+  /// [m^2] Lower bound of the squared distance to elements that may be nearer than `hit`, because the search was cut
+  /// short or is not certain of them; infinity if there are none.
+  double open2 = std::numeric_limits<double>::infinity();
   bool proved = false;     ///< `hit` is certainly the nearest point of all
   bool exhausted = false;  ///< the budget ended before the search was finished
   int nodes = 0, elements = 0;

@@ -163,5 +163,31 @@ TEST(Entering, APlaneFarFromTheOriginByShallowPaths) {
         }
 }
 
+/// Near the axis of a tube, all triangles look equally near: a search of little work runs out, and the foot that it has
+/// is farther than the nearest one. The path must not step over the wall there.
+TEST(Entering, AWallThatIsNearerThanTheSearchKnows) {
+  constexpr int kPoints = 20000;
+  constexpr SearchBudget kLittle{2048, 1};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> wobble(0.0098, 0.0102), angle(0, 2 * M_PI);
+  std::vector<Vector3d> line;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double a = 2 * M_PI * i / kPoints;
+    line.push_back(wobble(random) * Vector3d(std::cos(a), 0, std::sin(a)));
+  }
+  const Model model(strip(line, 0));
+  Tracer tracer(model);
+  int degraded = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double a = angle(random);
+    tracer.reset();
+    degraded +=
+        tracer.step(Vector3d::Zero(), {contact::Sides::kBoth}, kLittle).status == contact::FootStatus::kDegraded;
+    const Vector3d p(0.015 * std::cos(a), 0, 0.015 * std::sin(a));
+    EXPECT_GT(tracer.step(p, {contact::Sides::kBoth}, kLittle).depth, 0) << "path " << i;
+  }
+  EXPECT_GT(degraded, 150);
+}
+
 }  // namespace
 }  // namespace hapticd::brep
