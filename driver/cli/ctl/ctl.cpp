@@ -62,7 +62,7 @@ int showSocket(const CtlArguments& options) {
 /// @param scene file that was sent with the request; "" if there was none
 int show(const CtlArguments& options, const Result<std::string>& answer, const std::string& scene = "") {
   auto json = acceptedAnswer(answer);
-  if (!json) return fail(kFailed, document::withAbsentFiles(json.error(), scene));
+  if (!json) return fail(exitCodeOf(answer, !scene.empty()), document::withAbsentFiles(json.error(), scene));
   printNote(*json);
   if (options.tells_socket) (*json)["name"] = options.name, (*json)["socket"] = socketOf(options);
   return printJson(*json);
@@ -86,7 +86,7 @@ int sendScene(const CtlArguments& options, Json request) {
   }
   const std::string scene = request["file"].get<std::string>();
   auto files = openNamed(scene);
-  if (!files && !again) return fail(kFailed, files.error());
+  if (!files && !again) return fail(kBadInput, files.error());
   if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
@@ -127,7 +127,7 @@ int follow(const CtlArguments& options) {
   uint64_t seen = 0;
   for (const char* word : {"vertices", "geometry"}) {  // if the model has no frames, the first request fails
     const auto answer = client->ask(document::jsonLine({{"do", word}, {"model", options.model}}), kDrawingPatience);
-    if (const auto json = acceptedAnswer(answer); !json) return fail(kFailed, json.error());
+    if (const auto json = acceptedAnswer(answer); !json) return fail(exitCodeOf(answer), json.error());
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
   while (std::fflush(stdout) == 0) {

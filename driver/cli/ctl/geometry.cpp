@@ -57,7 +57,7 @@ int saveGeometry(const std::string& socket, Json request, const std::string& fil
   const auto reply = client->askForMore(document::jsonLine(request), kDrawingPatience);
   if (!reply) return fail(kFailed, reply.error());
   const auto accepted = acceptedAnswer(reply->line);
-  if (!accepted) return fail(kFailed, accepted.error());
+  if (!accepted) return fail(exitCodeOf(reply->line), accepted.error());
   const Json& answer = *accepted;
   const std::size_t places = 3 * answer.value("vertices", std::size_t{0});
   const std::size_t before = answer.value("normals", false) ? 2 * places : places;

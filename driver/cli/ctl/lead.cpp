@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "cli/ctl/answer.hpp"
 #include "cli/support/command.hpp"
 #include "control/client.hpp"
 #include "document/json_text.hpp"
@@ -103,9 +104,7 @@ int leadByLines(const LeadOptions& options) {
   request[options.hand.empty() ? "model" : "hand"] = options.hand.empty() ? options.model : options.hand;
   auto reply = client->askForMore(document::jsonLine(request));
   if (!reply) return fail(kFailed, reply.error());
-  const Json answer = document::parseJson(reply->line);
-  if (!answer.is_object() || !answer.value("ok", false))
-    return fail(kFailed, answer.is_object() ? answer.value("error", std::string("refused")) : reply->line);
+  if (const auto answer = acceptedAnswer(reply->line); !answer) return fail(exitCodeOf(reply->line), answer.error());
   void* memory = mmap(nullptr, HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, reply->descriptor.get(), 0);
   if (memory == MAP_FAILED) return fail(kFailed, std::string("cannot map the lead: ") + std::strerror(errno));
   int exit_code = putLines(*client, *static_cast<link::PoseSlot*>(memory));

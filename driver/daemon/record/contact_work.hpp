@@ -16,14 +16,17 @@ namespace hapticd::record {
 /// The work of one model on one probe that is in contact with it.
 class ContactWork {
  public:
+  static constexpr double kSeen = 0.02;  ///< [s] a hand's way in a longer time is no straight line: nobody saw it
+
   /// [rt] Adds a tick. The work between two ticks is calculated with the mean of their two forces, which is exact for a
   /// spring.
   /// @param number number of the tick; if ticks are missing before it, no work is counted
+  /// @param dt [s] since the last tick; if it is longer than kSeen, no work is counted
   /// @param force [N] and position [m] in the world frame
   /// @param depth [m] depth of the probe; 0 if it is outside
-  void add(uint64_t number, const Eigen::Vector3d& force, const Eigen::Vector3d& position,
+  void add(uint64_t number, double dt, const Eigen::Vector3d& force, const Eigen::Vector3d& position,
            double depth) noexcept HSP_RT {
-    if (number == next_) {
+    if (number == next_ && dt <= kSeen) {
       const double work = 0.5 * (force + force_).dot(position - position_);
       if ((depth > 0 || was_inside_) && std::isfinite(work)) (work > 0 ? given_ : taken_) += std::abs(work);
     } else if (const double stored = force.norm() * std::max(depth, 0.0); std::isfinite(stored)) {

@@ -191,7 +191,7 @@ def scene_without_an_arm(environment, folder):
         file.write("hapticd: 1\nmodels:\n" + BALL.format(source=SOURCE, name="slip", x=0.1).replace("sphere.yaml", "sphre.yaml"))
     done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "slip.yaml")], env=environment, capture_output=True,
                           text=True, timeout=60)
-    check("a misspelt file is told as check tells it", done.returncode == 1 and "there is no file /" in done.stderr and
+    check("a misspelt file is told as check tells it", done.returncode == 2 and "there is no file /" in done.stderr and
           '(did you mean "sphere.yaml"?)' in done.stderr and "passed along" not in done.stderr, done)
     broken = os.path.join(folder, "broken.hpart")
     with open(os.path.join(SOURCE, "config", "models", "dm1.hpart"), "rb") as whole, open(broken, "wb") as part:

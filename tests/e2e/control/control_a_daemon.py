@@ -74,7 +74,7 @@ def commands(daemon):
         "model teapot on simulated Premium 1.5", "no program may push (clients: off)", path)), begin)
     for word in ("hold", "clear"):
         code, _, err = daemon.ask(word, "nobody")
-        check(f"{word} of a device that is none names those that are", code == 1 and "expected one of: simulated Premium 1.5" in err, err)
+        check(f"{word} of a device that is none names those that are", code == 2 and "expected one of: simulated Premium 1.5" in err, err)
     check("the hand comes to touch it", daemon.until(lambda: json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["force_n"] > 0.3))
     feet = json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["feet"]
     check("top counts what is known of its feet", set(feet) == {"nearest", "held", "degraded"} and feet["nearest"] + feet["held"] > 100, feet)
@@ -83,7 +83,12 @@ def commands(daemon):
     daemon.expect(0, "enable", "teapot")
     daemon.expect(1, "set", "teapot", "stiffness", "600")
     daemon.expect(0, "set", "teapot", "stiffness", "600", "--consent")
-    daemon.expect(1, "set", "nobody", "stiffness", "600")
+    daemon.expect(2, "set", "nobody", "stiffness", "600", "--consent")
+    daemon.expect(2, "set", "teapot", "stiffnes", "600", "--consent")
+    daemon.expect(2, "set", "teapot", "stiffness", "1e9", "--consent")
+    daemon.expect(2, "get", "teapot", "stiffnes")
+    daemon.expect(2, "add", os.path.join(daemon.folder, "none.yaml"))
+    daemon.expect(2, "lead", "nobody")
     daemon.expect(1, "move", "teapot", "--position", "0.1", "0", "0")
     daemon.expect(0, "add", scene("sphere"))
     check("an added model is listed", daemon.until(lambda: "sphere" in daemon.models()))
@@ -117,7 +122,7 @@ def kinematic(daemon):
         check("a move that is too fast is slowed and says so",
               answer[0] == 0 and json.loads(answer[1])["seconds"] >= (1.4 if place == "0.9" else 0.05), answer)
     time.sleep(0.5)  # s
-    daemon.expect(1, "move", "door", "--position", "nan", "0", "0")
+    daemon.expect(2, "move", "door", "--position", "nan", "0", "0")
     daemon.expect(0, "remove", "door")
 
 

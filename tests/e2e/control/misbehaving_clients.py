@@ -64,7 +64,7 @@ def pipes(folder):
     daemon = Daemon(folder).ready()
     for command in (["add", pipe], ["reload", pipe]):
         code, said = daemon.ctl(*command)
-        check(f"{command[0]} refuses a pipe", code == 1 and "is a pipe, expected a file" in said, (code, said))
+        check(f"{command[0]} refuses a pipe", code == 2 and "is a pipe, expected a file" in said, (code, said))
     check("and the daemon answers", daemon.ctl("status")[0] == 0)
     check("and ends in order", daemon.end()[0] == 0)
 

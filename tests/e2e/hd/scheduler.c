@@ -73,6 +73,21 @@ static HDCallbackCode HDCALLBACK two_frames(void* data) {
   return HD_CALLBACK_DONE;
 }
 
+/* What hdapi.md says of a pair within a pair: its end is that of the frame. */
+static HDCallbackCode HDCALLBACK pair_in_a_pair(void* data) {
+  HDerror* errors = (HDerror*)data;
+  const HDdouble force[3] = {0, 0, 0};
+  hdBeginFrame(device);
+  hdBeginFrame(device);
+  hdEndFrame(device);
+  errors[0] = hdGetError().errorCode;
+  hdSetDoublev(HD_CURRENT_FORCE, force);
+  errors[1] = hdGetError().errorCode;
+  hdEndFrame(device);
+  errors[2] = hdGetError().errorCode;
+  return HD_CALLBACK_DONE;
+}
+
 static HDCallbackCode HDCALLBACK schedule_inside(void* data) {
   int* seen = (int*)data;
   HDSchedulerHandle handle;
@@ -131,7 +146,7 @@ static void handles(void) {
 }
 
 static void frames(void) {
-  HDerror again = 0;
+  HDerror again = 0, nested[3] = {1, 1, 1};
   int inside = 0;
   HDdouble positions[6] = {0, 0, 0, 1, 1, 1};
   hdScheduleAsynchronous(begin_frame, NULL, HD_MAX_SCHEDULER_PRIORITY);
@@ -141,6 +156,9 @@ static void frames(void) {
   check("a frame spans callbacks", spanning.after_set[0] == 0.5);
   check("an end without a begin is an error", spanning.lone_end == HD_ILLEGAL_END);
   check("so is a force without a frame", spanning.lone_set == HD_FRAME_ERROR);
+  hdScheduleSynchronous(pair_in_a_pair, nested, HD_DEFAULT_SCHEDULER_PRIORITY);
+  check("the first end ends a frame",
+        nested[0] == HD_SUCCESS && nested[1] == HD_FRAME_ERROR && nested[2] == HD_ILLEGAL_END);
   hdScheduleSynchronous(two_frames, &again, HD_DEFAULT_SCHEDULER_PRIORITY);
   check("two frames in a tick are one too many", again == HD_ILLEGAL_BEGIN);
   hdDisable(HD_ONE_FRAME_LIMIT);

@@ -34,9 +34,9 @@ def changes(ctl, folder):
         check(f"a {scene} is added", code == 0, told)
     code, _, told = ctl("add", sceneOf(folder, "crash"))
     check("a plugin that crashes while it is loaded is an answer that says so",
-          code == 1 and "crashed: Segmentation fault" in told and "crash.so" in told, (code, told))
+          code == 2 and "crashed: Segmentation fault" in told and "crash.so" in told, (code, told))
     code, _, told = ctl("add", sceneOf(folder, "nobody"))
-    check("one that does not exist too", code == 1 and 'usable shape plugin "nobody"' in told, (code, told))
+    check("one that does not exist too", code == 2 and 'usable shape plugin "nobody"' in told, (code, told))
     for command in (["set", "teapot", "stiffness", "600", "--consent"], ["disable", "teapot"], ["enable", "teapot"], ["remove", "pendulum"], ["remove", "button"],
                     ["reload"], ["add", os.path.join(SCENES, "button.yaml")], ["hold"], ["clear"], ["dump"], ["reload", os.path.join(SCENES, "torus.yaml")], ["status"], ["list"]):
         code, _, told = ctl(*command)

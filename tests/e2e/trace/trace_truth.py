@@ -133,6 +133,13 @@ def spheres(R=0.05):
         report(f"a model {name} leaves no foot behind", worst_of(errors) if math.isnan(far[-1]["depth"]) else math.inf, 1e-6)
 
 
+def out_of_reach(R=0.05):
+    """A model that the tip left by a jump has no foot, so none that is not proved."""
+    rows = trace([sphere(R)], [[i * 1e-3, 0, 0, R + (0.01 if i < 3 else 0.4)] for i in range(40)])
+    away = [r["status"] for r in rows if math.isnan(r["depth"])]
+    check("a model out of reach is not degraded", len(away) > 20 and set(away) == {0}, away)
+
+
 def bad_samples(R=0.05):
     rows = list(walk(lambda t: R - 0.001))
     for bad in (700, 701, 1500):
@@ -163,6 +170,7 @@ def boxes(h=0.04):
 
 
 spheres()
+out_of_reach()
 bad_samples()
 boxes()
 writes_the_models_that_are_asked_for()

@@ -147,11 +147,13 @@ bool Core::isTraced(const ModelState& model) noexcept HSP_RT {
 void Core::listLive() noexcept HSP_RT {
   live_.clear();
   for (uint32_t i = 0; i < models_.size(); ++i) {
-    const ModelState& model = models_[i];
+    ModelState& model = models_[i];
     const bool traced = isTraced(model);
     const bool moves = model.moves && (!model.dormant || model.kinematic);  // a dormant body rests where it begins
     if (traced || moves) live_.push_back(i);  // capacity is reserved for all models, so this never allocates
-    if (!traced) clearContacts(i);            // a model on a path still moves, but has no foot point
+    if (traced) continue;
+    clearContacts(i);  // a model on a path still moves, but has no foot point, and so no coarse one
+    if (model.status == HSP_DEGRADED) model.status = HSP_OK;
   }
 }
 

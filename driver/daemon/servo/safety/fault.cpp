@@ -17,7 +17,8 @@ const char* describe(Fault fault) {
     case Fault::kNone:
       return "no fault";
     case Fault::kNotFinite:
-      return "a force or position was not a number; check the plugin or device named, then restart";
+      return "a force or position was not a number; check its module: hapticd device check FILE, then: hapticd ctl "
+             "clear";
     case Fault::kDeviceLost:
       return "the device is lost; plug it in again, then: hapticd device list";
     case Fault::kDeviceFault:

@@ -126,11 +126,11 @@ void Telemetry::recordArms(uint32_t index, double dt, const Core& core, const Ar
   }
 }
 
-void Telemetry::recordWork(uint32_t index, const Core& core, const Arms& arms) noexcept HSP_RT {
+void Telemetry::recordWork(uint32_t index, double dt, const Core& core, const Arms& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm) {
     if (!arms[arm]->probe().valid) continue;
     const Contact& contact = core.contact(index, arm);
-    work_[index * stops_.size() + arm].add(recorded_, Eigen::Map<const Vector3d>(contact.world.force),
+    work_[index * stops_.size() + arm].add(recorded_, dt, Eigen::Map<const Vector3d>(contact.world.force),
                                            arms[arm]->probe().position, contact.traced ? contact.world.depth_m : 0);
   }
 }
@@ -173,7 +173,7 @@ void Telemetry::recordModels(double dt, const Core& core, const Arms& arms, Blac
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && pushed && model.status >= HSP_OK && !model.guard.silenced()) recordImproper(index, odd);
     recordArms(index, dt, core, arms);
-    if (pushed) recordWork(index, core, arms);
+    if (pushed) recordWork(index, dt, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;

@@ -109,7 +109,7 @@ class Telemetry final : public TickLog {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
   void recordImproper(uint32_t index, const ImproperForce& odd) noexcept HSP_RT;
-  void recordWork(uint32_t index, const Core& core, const Arms& arms) noexcept HSP_RT;
+  void recordWork(uint32_t index, double dt, const Core& core, const Arms& arms) noexcept HSP_RT;
   record::ModelReport reportOf(size_t place) const;
   static double pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT;
   void recordModels(double dt, const Core& core, const Arms& arms, BlackBoxRow& row) noexcept HSP_RT;

@@ -62,7 +62,7 @@ TEST(ContactWork, OfAMagnetIsThatOfItsSurfaceAlone) {
   ContactWork work;  // 1 N within 20 mm of a spring of 500 N/m: the hand begins 20 mm above it, and goes 5 mm in
   for (uint64_t tick = 0; tick <= 400; ++tick) {
     const double depth = .005 - .025 * std::cos(M_PI * static_cast<double>(tick) / 800);
-    work.add(tick, {0, depth > 0 ? 500 * depth : -1, 0}, {0, -depth, 0}, depth);
+    work.add(tick, 1e-3, {0, depth > 0 ? 500 * depth : -1, 0}, {0, -depth, 0}, depth);
   }
   EXPECT_NEAR(work.taken(), 0.5 * 500 * .005 * .005, 1e-4);
   EXPECT_NEAR(work.given(), 0, 1e-4) << "not the 20 mJ that the hand had before the pull";

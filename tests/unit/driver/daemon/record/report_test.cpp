@@ -260,7 +260,7 @@ ContactWork pressed(double gain) {
   ContactWork work;
   for (uint64_t tick = 0; tick <= 400; ++tick) {
     const double depth = .005 * std::sin(M_PI * static_cast<double>(tick) / 400);
-    work.add(tick, {0, 500 * depth * (tick > 200 ? gain : 1), 0}, {0, -depth, 0}, depth);
+    work.add(tick, 1e-3, {0, 500 * depth * (tick > 200 ? gain : 1), 0}, {0, -depth, 0}, depth);
   }
   return work;
 }
@@ -272,16 +272,27 @@ TEST(ContactWork, OfASpringIsNothingAndOfOneThatGivesMoreWhatItGives) {
   EXPECT_NEAR(spring.given(), kStored, 1e-9);
   EXPECT_NEAR(drives.given(), 1.8 * kStored, 1e-4 * kStored);
   ContactWork gap;
-  gap.add(0, {1, 0, 0}, {0, 0, 0}, 0.01);
-  gap.add(7, {1, 0, 0}, {1, 0, 0}, 0.01);  // the model was out of reach meanwhile
+  gap.add(0, 0, {1, 0, 0}, {0, 0, 0}, 0.01);
+  gap.add(7, 1e-3, {1, 0, 0}, {1, 0, 0}, 0.01);  // the model was out of reach meanwhile
   EXPECT_EQ(gap.given() + gap.taken(), 0);
+}
+
+/// A hand that strokes a ball goes along an arc while the process is stopped. Nobody knows how it pressed there.
+TEST(ContactWork, OfATimeThatNobodySawIsNotCounted) {
+  ContactWork stopped;
+  stopped.add(0, 0, {0, 0, 1}, {0, 0, 0.05}, 0.001);
+  stopped.add(1, 0.5, {1.4, 0, 0}, {0.05, 0, 0}, 0.002);
+  EXPECT_EQ(stopped.given(), 0);
+  EXPECT_EQ(stopped.taken(), 0);
+  stopped.add(2, 1e-3, {1.4, 0, 0}, {0.051, 0, 0}, 0.001);
+  EXPECT_NEAR(stopped.given(), 1.4e-3, 1e-9) << "and the ticks after it are";
 }
 
 TEST(ContactWork, OfAHandThatBeginsInsideIsNoMoreThanWasStoredThere) {
   ContactWork work;  // 500 N/m, 5 mm deep: 6.25 mJ
   for (uint64_t tick = 0; tick <= 200; ++tick) {
     const double depth = .005 * std::cos(M_PI * static_cast<double>(tick) / 400);
-    work.add(tick, {0, 500 * depth, 0}, {0, -depth, 0}, depth);
+    work.add(tick, 1e-3, {0, 500 * depth, 0}, {0, -depth, 0}, depth);
   }
   EXPECT_NEAR(work.given(), 0.5 * 500 * .005 * .005, 1e-9);
   EXPECT_EQ(work.taken(), 0);

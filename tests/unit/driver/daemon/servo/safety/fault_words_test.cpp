@@ -43,6 +43,17 @@ TEST(FaultWords, HaveTheConsequenceAndTheCure) {
             "device arm: stopped by the user; its forces ended and stay off until the fault is cleared");
 }
 
+TEST(FaultWords, NameACommandThatHelps) {
+  for (int i = 0; i < kFaultCount; ++i) {
+    const auto fault = static_cast<Fault>(i);
+    const bool helps = std::string(describe(fault)).find("hapticd ") != std::string::npos;
+    EXPECT_EQ(helps, fault != Fault::kNone && fault != Fault::kStopped) << describe(fault);
+  }
+  EXPECT_EQ(faultMessage("arm", Fault::kNotFinite, 0, nullptr, "my-arm.yaml"),
+            "device arm: a force or position was not a number; its forces ended and stay off until the fault is "
+            "cleared; check its module: hapticd device check my-arm.yaml, then: hapticd ctl clear");
+}
+
 TEST(FaultWords, SayWhichEndByThemselves) {
   const std::set<Fault> ends{Fault::kDeviceLost, Fault::kDeviceFault, Fault::kStale, Fault::kNotCalibrated};
   for (int i = 0; i < kFaultCount; ++i)
