@@ -4,6 +4,7 @@
 #include <BRepTools_ShapeSet.hxx>
 #include <BRep_Builder.hxx>
 #include <IGESCAFControl_Reader.hxx>
+#include <IGESData_BasicEditor.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
@@ -13,6 +14,7 @@
 #include <XCAFApp_Application.hxx>
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -21,6 +23,7 @@
 #include <unordered_set>
 
 #include "cad_import/assembly.hpp"
+#include "cad_import/iges_losses.hpp"
 #include "cad_import/losses.hpp"
 #include "cad_import/progress.hpp"
 
@@ -146,15 +149,27 @@ bool endsAsIges(const std::string& file) {
 /// number is 3 (IGES 5.3, global parameters 14 and 15).
 void readIgesUnit(const IGESData_GlobalSection& section, CadFile& cad) {
   constexpr const char* kUnits[] = {"in", "mm", "", "ft", "mi", "m", "km", "mil", "um", "cm", "uin"};
-  const int flag = section.UnitFlag();
-  const std::string name = section.UnitName().IsNull() ? "" : shortUnit(section.UnitName()->ToCString());
-  const bool named = flag == 3 && !name.empty();
-  if (flag >= 1 && flag <= 11 && flag != 3)
-    cad.unit = kUnits[flag - 1];
-  else if (named)
-    cad.unit = name;
-  else
-    assumeUnit(cad);
+  constexpr int kByName = 3;
+  int number = section.UnitFlag();
+  if (number < 0 || number > static_cast<int>(std::size(kUnits)))
+    throw CadError("its unit has the number " + std::to_string(number) +
+                   "; expected 1 to 11 (IGES 5.3, global parameter 14), such as 2 for millimetres");
+  if (number == kByName)
+    number = section.UnitName().IsNull() ? 0 : IGESData_BasicEditor::UnitNameFlag(section.UnitName()->ToCString());
+  if (number == 0 || number == kByName) return assumeUnit(cad);
+  cad.unit = kUnits[number - 1];
+}
+
+/// Notes a scale of an IGES file. It is meant for drawings, and Open CASCADE leaves it out.
+void noteIgesScale(const IGESData_GlobalSection& section, CadFile& cad) {
+  const double scale = section.Scale();
+  if (!(scale > 0) || scale == 1) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the file states a scale of %.6g of its model to the thing, which was left out: if the size is wrong, "
+                "import it with --scale %.6g",
+                scale, 1 / scale);
+  cad.remarks.emplace_back(text);
 }
 
 void readIges(const std::string& file, CadFile& cad) {
@@ -165,12 +180,13 @@ void readIges(const std::string& file, CadFile& cad) {
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw CadError("it is not an IGES file, or it is damaged");
   if (!endsAsIges(file)) throw CadError("it ends too early: the line of section T is missing; expected a whole file");
   const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
-  if (!model.IsNull()) readIgesUnit(model->GlobalSection(), cad);
+  if (!model.IsNull()) readIgesUnit(model->GlobalSection(), cad), noteIgesScale(model->GlobalSection(), cad);
   Handle(TDocStd_Document) document = newDocument();
   const Handle(Progress) progress = new Progress("reading shapes");
-  if (!reader.Transfer(document, progress->Start())) throw CadError("there are no shapes in it");
+  const bool made = reader.Transfer(document, progress->Start());
+  findLostIges(reader.WS(), cad.losses);
+  if (!made) throw CadError(noShapes(cad.losses));
   readTree(document, cad);
-  findLostFaces(reader.WS(), 1, cad.losses);
 }
 
 /// Returns true if a word is what C's printf() writes for a value that is not finite: "nan", "-inf", "1.#QNAN" and the
@@ -227,7 +243,19 @@ TopoDS_Shape shapeOfBrep(std::istream& in, std::vector<std::string>& remarks) {
   return shape;
 }
 
+/// Fails if a BREP file is of the binary form, which begins with an empty line and these words.
+void refuseBinary(const std::string& file) {
+  constexpr std::string_view kStart = "\nOpen CASCADE Topology";
+  std::string start(kStart.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start == kStart)
+    throw CadError(
+        "it is a BREP file in binary form, which is not read; expected the form of text: write it again as text, or as "
+        "STEP");
+}
+
 void readBrep(const std::string& file, CadFile& cad) {
+  refuseBinary(file);
   refuseNoNumbers(file);
   TopoDS_Shape shape;
   // At the end of an incomplete file Open CASCADE's reader would loop for ever, so the stream throws there.

@@ -2,7 +2,6 @@
 #include "cad_import/losses.hpp"
 
 #include <Bnd_Box.hxx>
-#include <IGESGeom_TrimmedSurface.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
@@ -36,10 +35,6 @@ namespace hapticd::cad {
 namespace {
 
 using Entity = Handle(Standard_Transient);
-
-bool isFace(const Entity& entity) {
-  return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) || entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface));
-}
 
 /// Returns the extent [mm] of the points from which a face of a STEP file is made; 0 if none are found.
 double extentOf(const Interface_Graph& graph, const Entity& face, double to_mm) {
@@ -157,7 +152,7 @@ void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, 
   std::vector<Entity> lost;
   for (Standard_Integer i = 1; i <= model->NbEntities(); ++i) {
     const Entity entity = model->Value(i);
-    if (!isFace(entity)) continue;
+    if (!entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) continue;
     const Handle(Transfer_Binder) binder = made->Find(entity);
     if (binder.IsNull() || TransferBRep::ShapeResult(binder).IsNull()) lost.push_back(entity);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds what the reader of a STEP or IGES file could not make, and what it had to assume.
+/// Finds what the reader of a STEP file could not make, and what it had to assume.
 #pragma once
 #include <STEPCAFControl_Reader.hxx>
 #include <XSControl_WorkSession.hxx>
@@ -12,7 +12,7 @@ inline constexpr const char* kNoUnit =
     "the file states no unit of length that can be read: millimetres were assumed; is the size right? If not, import "
     "it with --scale: 25.4 for inches, 10 for centimetres, 1000 for metres";
 
-/// [main] Appends a loss for each face of the file without a shape, with the reader's reason.
+/// [main] Appends a loss for each face of a STEP file without a shape, with the reader's reason.
 /// @param to_mm millimetres per unit of the coordinates in the file
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses);
 
