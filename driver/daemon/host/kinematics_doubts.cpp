@@ -264,8 +264,8 @@ std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_devic
   std::snprintf(
       text, sizeof text,
       "the torques of gravity() are more than the motors give at %d of %d places and mountings, up to %.4g N m "
-      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; masses must be "
-      "in kg",
+      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; "
+      "masses must be in kg",
       beyond, asked, worst * info.max_torque[joint], joint + 1, info.max_torque[joint]);
   return text;
 }

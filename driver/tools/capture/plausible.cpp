@@ -83,8 +83,8 @@ std::string tooLongAWay(const JointSeries& course, Stops stops) {
   const double way = course.most - course.least, room = stops.high - stops.low;
   return "moves over " + number(way) + " rad, but its arm.limits are only " + number(room) +
          " rad apart: scale is at least " + number(way / room) +
-         " times too large: is it in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the "
-         "joint?";
+         " times too large: is it in rad (for degrees: scale_degrees), "
+         "with the turns of the motor in one turn of the joint?";
 }
 
 /// [rad] The greatest motion of a joint that is called tiny although its number changed by many counts, where its stops

@@ -261,8 +261,8 @@ std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double exp
   const double jump = (now - before).norm();
   if (jump <= kRoom + kLever * explained) return "";
   return "the torque jumps by " + text(jump) +
-         " N m where the surface is met; expected it to grow from 0 with the depth, and about the probe, not about the "
-         "model's origin";
+         " N m where the surface is met; "
+         "expected it to grow from 0 with the depth, and about the probe, not about the model's origin";
 }
 
 /// Tests that the force does not jump where the surface is met, because a jump buzzes even if the slope below the

@@ -134,16 +134,16 @@ class LengthsInMetres {
   std::string wrong() const {
     constexpr double kFar = 3;  // factor, because a shape may measure its depth in another way, but in m
     if (2 * flat_ > outside_)
-      return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; expected minus the distance to the "
-             "surface";
+      return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; "
+             "expected minus the distance to the surface";
     const double rate = std::abs(medianOf(rates_)), foot = medianOf(feet_);
     if (rate > kFar || rate < 1 / kFar)
       return "depth_m changes by " + text(rate) +
              " m where the probe moves by 1 m along the normal; expected 1: look for a depth that is not in m";
     if (foot > kFar || foot < 1 / kFar)
       return "point is " + text(foot) +
-             " times as far from the probe as depth_m says; expected the foot on the surface, in m, in the model's "
-             "frame";
+             " times as far from the probe as depth_m says; "
+             "expected the foot on the surface, in m, in the model's frame";
     return "";
   }
 

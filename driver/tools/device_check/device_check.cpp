@@ -110,8 +110,8 @@ Finding claims(const scene::Device& device) {
                            ", so `pace: device` would fall back to the clock; expected both, or neither");
   if ((claimed & HDV_C_CALIBRATION) != 0 && !has(HDV_EXT_CALIBRATION))
     return Finding::warned("open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
-                           ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
-                           "HDV_S_CALIBRATED");
+                           ": hapticd device calibrate cannot calibrate it, "
+                           "and no force comes before samples carry HDV_S_CALIBRATED");
   if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return Finding::warned(odd);
   if (const std::string bounds = forgotten(opened.arm->info()); !bounds.empty()) return Finding::warned(bounds);
   if (const std::string heavy =

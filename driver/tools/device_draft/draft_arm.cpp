@@ -47,8 +47,8 @@ constexpr const char* kBelowChain =
 
 std::string chainOf(const DeviceDraft& draft) {
   std::string text =
-      "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
-      "joint\n";
+      "    dh:                           # a, alpha, d, theta: "
+      "m, rad (standard Denavit-Hartenberg), one row per joint\n";
   for (int i = 0; i < draft.joints; ++i)
     text += fmt::format("      - [{:g}, {:.9g}, 0, 0]\n",
                         draft.lengths.empty() ? 0.2 : DeviceDraft::ofJoint(draft.lengths, i),

@@ -63,8 +63,8 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
                           : how.estimator == "kalman" ? "expected a higher servo.rate"
                                                       : fmt::format("expected at most {:.0f}", std::floor(most));
   document::report(warnings, placeInServo(scene, kParameter), kParameter,
-                   fmt::format("{} lags by up to {:.3g} ms: damping and friction act too late, and can push the hand; "
-                               "{}",
+                   fmt::format("{} lags by up to {:.3g} ms: "
+                               "damping and friction act too late, and can push the hand; {}",
                                lags, delay * 1e3, fix));
   return warnings;
 }
