@@ -25,9 +25,8 @@ std::string phantomOf(const DeviceDraft& draft) {
 
 constexpr const char* kNoLengths = "    # lengths: [a, b, c, d, e, f, r, s]    # m; if left out, those of a Falcon\n";
 constexpr const char* kDeltaMasses =
-    "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: the weight is not carried; if left out, "
-    "guesses "
-    "for a Falcon\n";
+    "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: the weight is not carried; "
+    "if left out, guesses for a Falcon\n";
 
 std::string deltaOf(const DeviceDraft& draft) {
   if (draft.lengths.empty()) return std::string(kNoLengths) + kDeltaMasses;
