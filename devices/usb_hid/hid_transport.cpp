@@ -135,9 +135,8 @@ class HidTransport final : public Transport {
         "HID device " + idText(address) + (address.serial.empty() ? "" : " serial " + address.serial);
     if (!refused.empty())
       return who + " cannot be opened: " + refused +
-             "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, "
-             "plug "
-             "it in again; hapticd doctor says what is missing";
+             "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), "
+             "join the group haptic, plug it in again; hapticd doctor says what is missing";
     if (!serials.empty())
       return who + " not found: the devices with this id have the serial numbers " + serials +
              "\n  the arm stays off\n  fix: correct usb.serial in the device file";

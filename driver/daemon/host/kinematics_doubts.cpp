@@ -194,9 +194,8 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
   if (std::string without = placesWithoutNumbers(calls); any && !without.empty()) doubts.push_back(std::move(without));
   if (any && pullsDown(calls))
     doubts.push_back(
-        "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; expected "
-        "those "
-        "that hold it up: tau = - sum of m J^T g");
+        "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; "
+        "expected those that hold it up: tau = - sum of m J^T g");
   if (const char axis = any ? pushesAside(calls) : '\0'; axis != 0)
     doubts.push_back(std::string("the torques of its gravity() push the tip aside and never up, if gravity is along ") +
                      axis + ": are two of its components exchanged? Expected tau = - sum of m J^T g");

@@ -65,9 +65,9 @@ std::string slowArmsText(const RunReport& report) {
   const bool late = static_cast<double>(report.overruns) > kMany * static_cast<double>(report.ticks);
   if (report.virtual_time || !late || !(arms > kMost * report.compute_us.quantile(0.5))) return "";
   return fmt::format(
-      "  slow arm  ticks come late because of the arms: read() and write() of their modules take {:.0f} us in the "
-      "median "
-      "tick\n  fix: hapticd device check FILE (the device file) names the call; "
+      "  slow arm  ticks come late because of the arms: "
+      "read() and write() of their modules take {:.0f} us in the median tick\n"
+      "  fix: hapticd device check FILE (the device file) names the call; "
       "what waits belongs in a thread of the module's own\n",
       arms);
 }

@@ -107,9 +107,8 @@ std::string tinyWays(const std::map<size_t, JointSeries>& courses) {
   if (courses.empty()) return "";
   return "the numbers of all joints changed by more than 500 counts, but no joint moved by more than " +
          number(widest) +
-         " rad: if they were moved by hand, scale is far too small; it must be in rad: 2 pi / (counts of a motor turn "
-         "* "
-         "motor turns of one joint turn)\n";
+         " rad: if they were moved by hand, scale is far too small; "
+         "it must be in rad: 2 pi / (counts of a motor turn * motor turns of one joint turn)\n";
 }
 
 /// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.

@@ -59,11 +59,9 @@ Verdict contactFound(const Recipe& recipe, uint64_t) {
     return "NOT TESTED: its depth is nowhere above 0, not even 1 mm behind the foot points that it names; expected "
            "depth_m above 0 inside: look at the sign of depth_m and at point";
   if (touch.felt) return fieldOnly();
-  return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin from 1 "
-         "mm "
-         "to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell where the shape "
-         "is "
-         "by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
+  return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin "
+         "from 1 mm to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell "
+         "where the shape is by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
 }
 
 /// Returns why forces pull the hand in. The whole press is judged, because a detent may pull for part of it. The

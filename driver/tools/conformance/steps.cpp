@@ -59,9 +59,8 @@ std::string jumped(double newtons, double metres, double stiffness) {
   return "the force jumped by " + text(newtons) + " N while the probe moved " + text(metres) +
          " m: the claimed stiffness (report.max_stiffness, " + text(stiffness) + " N/m) explains " +
          text(stiffness * metres) +
-         " N of it, and it is the third such jump; look for a length that is not in m, a gap in the law of the force, "
-         "or "
-         "a claim that is too small";
+         " N of it, and it is the third such jump; "
+         "look for a length that is not in m, a gap in the law of the force, or a claim that is too small";
 }
 
 Verdict forceContinuous(const Recipe& recipe, uint64_t) {

@@ -88,8 +88,7 @@ std::string forgotten(const hdv_info& info) {
   if (boundless > 0)
     text = "hdv_info.max_torque is 0 for " + of(boundless) +
            ", so nothing bounds the torques that are sent, and check cannot compare limits.force with the motors; "
-           "expected "
-           "the largest torque of each joint [N m; N for a sliding joint]";
+           "expected the largest torque of each joint [N m; N for a sliding joint]";
   if (fixed > 0)
     text += std::string(text.empty() ? "" : "; ") + "hdv_info.position_min and position_max are 0 for " + of(fixed) +
             ", so the range of the arm is unknown; expected the stops [rad; m for a sliding joint], or infinite ones";

@@ -79,9 +79,8 @@ document::Problems wideScales(const scene::Scene& scene) {
     if (scale == nullptr || damping == nullptr || scale->number < kWideScale || damping->number <= 0) continue;
     document::report(
         warnings, scale->place, fmt::format("models[{}].parameters.depth_scale", i),
-        fmt::format("the scale is {:g} m: {} has its full damping of {:g} N s/m only at this depth; at 1 mm it has "
-                    "{:.2g} N s/m; "
-                    "the value must be in m (1 mm is 0.001)",
+        fmt::format("the scale is {:g} m: {} has its full damping of {:g} N s/m only at this depth; "
+                    "at 1 mm it has {:.2g} N s/m; the value must be in m (1 mm is 0.001)",
                     scale->number, scene.models[i].name, damping->number,
                     damping->number * std::pow(1e-3 / scale->number, exponent != nullptr ? exponent->number : 1)));
   }
