@@ -51,8 +51,8 @@ struct ParameterTable {
         F::array("arm.angles", &T::angles, "rad", 1, 0, 3, -10, 10, "[]",
                  "delta: angles about its axis at which the three arms are mounted; default: those of the Falcon."),
         F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
-                 "Largest torque of each joint, behind its gear, as in the device file of a real arm. It replaces "
-                 "joint.max_torque.")};
+                 "Largest torque of each joint, behind its gear, as in the device file of a real arm. "
+                 "It replaces joint.max_torque.")};
   }
 
   /// What the arm reports of itself, and how it is simulated.
@@ -116,8 +116,8 @@ struct ParameterTable {
                 "object's radius. press, tap: the object's radius; hand.rise is the depth."),
         F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
         F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
-                "stroke: height of the rise along the axis. press, tap: depth to which the hand moves inwards from "
-                "hand.radius."),
+                "stroke: height of the rise along the axis. "
+                "press, tap: depth to which the hand moves inwards from hand.radius."),
         F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles per second."),
         F::real("hand.approach", &T::approach, "m", 0, 1, 0.02,
                 "The hand starts at this distance, along hand.normal, from the first point of its script."),
@@ -128,10 +128,9 @@ struct ParameterTable {
                 "Slow unrest of 0.2 to 1 Hz: rms force in each direction."),
         F::path("hand.path", &T::path,
                 "CSV file with the columns t,x,y,z (s, m, device frame), for hand.script: path."),
-        F::array(
-            "hand.pressed", &T::pressed, "s, s", 2, 0, 200, 0, 1e9, "[]",
-            "Times in which the hand holds the arm's button down: rows of begin and end. Without a row the arm has "
-            "no button."),
+        F::array("hand.pressed", &T::pressed, "s, s", 2, 0, 200, 0, 1e9, "[]",
+                 "Times in which the hand holds the arm's button down: rows of begin and end. "
+                 "Without a row the arm has no button."),
         F::array("hand.unplugged", &T::unplugged, "s, s", 2, 0, 200, 0, 1e9, "[]",
                  "Times in which the arm is unplugged: rows of begin and end. So a program can be tried on an arm that "
                  "is lost and comes back.")};

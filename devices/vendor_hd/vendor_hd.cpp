@@ -86,8 +86,8 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
     max_force_ = force > 0 && most > 0 ? std::min(force, most) : std::max(force, most);
     if (max_force_ == 0)
       throw std::runtime_error(
-          "the vendor's library does not give the arm's largest force\n  fix: give it in N as parameters: {force: "
-          "...}");
+          "the vendor's library does not give the arm's largest force\n"
+          "  fix: give it in N as parameters: {force: ...}");
     CartesianArm::describe(info, max_force_);
     info.rate_hz = std::max(number(HD_UPDATE_RATE), 1.0);
     info.continuous_force = std::min(number(HD_NOMINAL_MAX_CONTINUOUS_FORCE), max_force_);

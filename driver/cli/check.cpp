@@ -106,8 +106,8 @@ void addCheck(const Command& app, int& exit_code) {
       "button that does not click, and a plugin that run would silence or warn of. Warnings do not affect the exit "
       "code.\n\nExamples:\n  hapticd check "
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
-      "--device my-arm.yaml\n  hapticd check --schema scene > "
-      "scene.schema.json");
+      "--device my-arm.yaml\n"
+      "  hapticd check --schema scene > scene.schema.json");
   command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 

@@ -229,8 +229,8 @@ std::string plainMessage(const std::string& text, const Place& place, const std:
   if (begins("end of map flow") || begins("end of sequence flow"))
     return "no comma between this and what stands before it, expected {key: value, key: value} or [1, 2]";
   if (begins("end of map not found") || begins("end of sequence not found"))
-    return "this line does not continue the lines before it, expected key: value, or - for a list, with their "
-           "indentation";
+    return "this line does not continue the lines before it, "
+           "expected key: value, or - for a list, with their indentation";
   return words;
 }
 

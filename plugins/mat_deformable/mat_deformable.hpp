@@ -55,8 +55,8 @@ class MatDeformable final : public Shape {
     using F = Fields<T>;
     return std::array{
         F::real("split", &T::split_, "", 0, 1, 0.5,
-                "g: share of the depth by which the skeleton moves. 0.5: the opposite side of the body stays; 1: it "
-                "moves along"),
+                "g: share of the depth by which the skeleton moves. "
+                "0.5: the opposite side of the body stays; 1: it moves along"),
         F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
                  "p', q': how many control points a contact moves; with degree + 1 the dent does not jump. It changes "
                  "the drawing, not the force"),
@@ -73,8 +73,8 @@ class MatDeformable final : public Shape {
                 "with dynamics felt: time constant of this relaxation"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
                 "distance from the contact to the ends of four springs along the surface, as a share of the parameter "
-                "range; 0: no such springs. They make the body stiffer than its file says; with shear_distance there "
-                "are none")};
+                "range; 0: no such springs. They make the body stiffer than its file says; "
+                "with shear_distance there are none")};
   }
   static constexpr auto contactFields() {  // what else a probe feels
     using T = MatDeformable;
@@ -106,15 +106,15 @@ class MatDeformable final : public Shape {
         F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01,
                 "mass of each vertex of a medial mesh whose file gives none (.ma)"),
         F::integer("rings", &T::rings_, "", 0, 8, 2,
-                   "medial mesh only: how many rings of neighbouring vertices a contact moves. It changes the drawing, "
-                   "not the force"),
+                   "medial mesh only: how many rings of neighbouring vertices a contact moves. "
+                   "It changes the drawing, not the force"),
         F::real("crease", &T::crease_, "m", 0, 1, 1e-3,
-                "medial mesh only: where a branch begins, the force turns from one part to the other over this width; "
-                "0: at once",
+                "medial mesh only: where a branch begins, "
+                "the force turns from one part to the other over this width; 0: at once",
                 HSP_P_LIVE),
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
-                "largest distance of the drawn mesh, which is updated 60 times a second, from the surface; 0: no such "
-                "mesh"),
+                "largest distance of the drawn mesh, which is updated 60 times a second, "
+                "from the surface; 0: no such mesh"),
         F::real(
             "shear_distance", &T::shear_distance_, "m", 0, 1, 0,
             "distance along the surface, to either side, over which the change of the stiffness is taken. It pushes "

@@ -208,8 +208,8 @@ class Reader {
     }
     if (std::all_of(rows->begin(), rows->end(), isPoint)) {  // read on as if it were one row
       problems_.add(at,
-                    "a list of points, expected rows of points, with one more bracket: [[[0, 0, 0], [0.1, 0, 0]], "
-                    "...]");
+                    "a list of points, expected rows of points, "
+                    "with one more bracket: [[[0, 0, 0], [0.1, 0, 0]], ...]");
       grid.count = {1, static_cast<int>(rows->size())};
       for (std::size_t j = 0; j < rows->size(); ++j) grid.points.push_back(point((*rows)[j], below(at, j)));
       return true;

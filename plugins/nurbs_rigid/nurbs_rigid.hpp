@@ -29,11 +29,11 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
         tracingFields<NurbsRigid>(),
         std::array{
             F::text("instance", &NurbsRigid::instance_name_, "",
-                    "parts only: name of one instance or assembly, or its path assembly/sub/part; left out: the whole "
-                    "part"),
+                    "parts only: name of one instance or assembly, or its path assembly/sub/part; "
+                    "left out: the whole part"),
             F::choice("motion", &NurbsRigid::motion_, kMotionNames, 0,
-                      "static: does not move; kinematic: the host moves it along a path; dynamic: it moves under the "
-                      "forces on it"),
+                      "static: does not move; kinematic: the host moves it along a path; "
+                      "dynamic: it moves under the forces on it"),
             F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800,
                     "k of the contact law k x0 (x/x0)^n: the force is k x0 at depth x0", HSP_P_LIVE | HSP_P_SAFETY),
             F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0,
@@ -43,8 +43,8 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
             F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3,
                     "x0 of the contact law: the depth at which the force is k x0", HSP_P_SAFETY),
             F::real("friction_static", &NurbsRigid::friction_static_, "", 0, 10, 0,
-                    "mu_s: a stuck probe begins to slide when the force along the surface exceeds mu_s times the wall "
-                    "force"),
+                    "mu_s: a stuck probe begins to slide "
+                    "when the force along the surface exceeds mu_s times the wall force"),
             F::real("friction_dynamic", &NurbsRigid::friction_dynamic_, "", 0, 10, 0,
                     "mu_d: the friction on a sliding probe is mu_d times the wall force; at most friction_static"),
             F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0,

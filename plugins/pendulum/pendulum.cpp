@@ -46,8 +46,8 @@ dynamics::RigidBodyLaw Pendulum::hingeLaw(double inertia, const Eigen::Vector3d&
     law.limits = {limits_[0] - angle_, limits_[1] - angle_};  // a body counts from where it starts
     if (limits_[0] < limits_[1] && !(law.limits.lowest <= 0 && law.limits.highest >= 0))
       throw std::invalid_argument(
-          "limits: the pendulum starts at `angle`, which is not between its end stops; expected lowest <= angle <= "
-          "highest");
+          "limits: the pendulum starts at `angle`, which is not between its end stops; "
+          "expected lowest <= angle <= highest");
   }
   return law;
 }

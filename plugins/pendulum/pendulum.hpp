@@ -40,8 +40,8 @@ class Pendulum final : public TracedShape {
             F::real("inertia", &Pendulum::inertia_, "kg m^2", 0, 1e9, 0,
                     "moment of inertia about the pivot; 0: that of a point mass at the distance `length`"),
             F::real("length", &Pendulum::length_, "m", 0, 1e3, 0.25,
-                    "distance from the pivot to the centre of mass, which at angle 0 lies straight below the pivot, "
-                    "along gravity"),
+                    "distance from the pivot to the centre of mass, "
+                    "which at angle 0 lies straight below the pivot, along gravity"),
             F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "damping of the swing"),
             F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "angle at the start; 0: hanging straight down"),
             F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "angular velocity at the start"),

@@ -112,8 +112,8 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
   for (const std::string& line : instancesOf(*part_)) writeLog(HSP_LOG_DEBUG, line);
   if (sides_ == kFront && part_->open())
     warn(
-        "is not closed, but with sides: front everything behind it counts as solid; give sides: both, or leave sides "
-        "out");
+        "is not closed, but with sides: front everything behind it counts as solid; "
+        "give sides: both, or leave sides out");
   if (sides_ == kAuto) sides_ = part_->open() ? kBoth : kFront;
   const uint32_t probes = std::max(activation.max_probes, 1u);
   part_tracers_.clear();

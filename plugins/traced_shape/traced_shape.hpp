@@ -38,8 +38,8 @@ class TracedShape : public Shape {
     using F = Fields<T>;
     return std::array{
         F::path("geometry", &TracedShape::geometry_,
-                "model file (format hapticd-model/1, YAML or JSON); for nurbs_rigid also a part (.hpart), see hapticd "
-                "import",
+                "model file (format hapticd-model/1, YAML or JSON); "
+                "for nurbs_rigid also a part (.hpart), see hapticd import",
                 HSP_P_REQUIRED),
         F::choice(
             "sides", &TracedShape::sides_, kSideNames, kAuto,

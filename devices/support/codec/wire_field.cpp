@@ -97,8 +97,8 @@ bool readType(const Tree& tree, Field& field) {
     field.bits = static_cast<uint8_t>(bits);
   } else if (tree.exists() && tree.problems() == before) {
     tree.fail("\"" + text +
-              "\", expected one of i8, i16, i32, u8, u16, u32 (any width: i2 to i64, u1 to u64), f32, f64, nibble, "
-              "nibbles" +
+              "\", expected one of i8, i16, i32, u8, u16, u32 "
+              "(any width: i2 to i64, u1 to u64), f32, f64, nibble, nibbles" +
               suggestType(text));
   }
   return good;

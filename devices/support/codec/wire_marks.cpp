@@ -80,8 +80,8 @@ void otherConstant(const Tree& tree, int mark, const std::vector<FieldFacts>& kn
     if (given == mark) return;
     return tree.at("fields").item(i).at("value").fail(
         "is " + hexOf(given) + " in the first byte after the id, but framing.start puts its mark " + hexOf(mark) +
-        " there, if the id is removed; expected the same value, or no constant field here (framing writes the mark by "
-        "itself)");
+        " there, if the id is removed; "
+        "expected the same value, or no constant field here (framing writes the mark by itself)");
   }
 }
 

@@ -33,8 +33,8 @@ Delta::Delta(const DeltaGeometry& geometry)
     : geometry_(geometry), R_device_arm_(geometry.base.orientation.normalized().toRotationMatrix()) {
   if (!(geometry.a > 0 && geometry.b > 0))
     throw std::invalid_argument(
-        "arm.lengths: a and b (the first two numbers) are the lengths of an arm and a rod of the delta; expected more "
-        "than 0 m");
+        "arm.lengths: a and b (the first two numbers) are the lengths of an arm and a rod of the delta; "
+        "expected more than 0 m");
   if (!(geometry.theta_min < geometry.theta_max))
     throw std::invalid_argument("delta: the angle limits are in the wrong order; expected the smaller angle first");
   for (size_t i = 0; i < 3; ++i) {

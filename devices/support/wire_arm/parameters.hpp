@@ -78,8 +78,8 @@ struct ParameterTable {
     return std::array{
         F::choice("arm.kind", &T::kind, kKinds, 0, "The mechanism."),
         F::vector3("arm.origin", &T::origin, "m", -10, 10, "[0, 0, 0]",
-                   "Position in the device frame: for phantom, of the tip in the neutral pose; for delta and chain, of "
-                   "the base."),
+                   "Position in the device frame: for phantom, of the tip in the neutral pose; "
+                   "for delta and chain, of the base."),
         F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
                  "delta, chain: orientation of the base in the device frame, a unit quaternion w, x, y, z."),
         F::array("arm.lengths", &T::lengths, "m", 1, 0, 8, -10, 10, "[]",
@@ -104,8 +104,8 @@ struct ParameterTable {
         F::real("health.stale", &T::stale, "s", 0.001, 0.018, 0.015,
                 "The motors are switched off if no good report comes for this time."),
         F::real("health.least_rate", &T::least_rate, "", 0, 0.95, 0.57,
-                "The motors are switched off if reports come more slowly than this fraction of wire.rate; 0 means no "
-                "check."),
+                "The motors are switched off if reports come more slowly than this fraction of wire.rate; "
+                "0 means no check."),
         F::real("health.recovery", &T::recovery, "s", 0.02, 10, 0.2,
                 "Time without an error after which a trouble is over."),
         F::real("health.ramp", &T::ramp, "s", 0, 10, 0.25,

@@ -43,8 +43,8 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kBusError:
       return "transfers on the bus fail; check the cable, the hub or the rack";
     case Trouble::kFirmware:
-      return "the firmware has another version than the device file expects; load that version, or correct the device "
-             "file";
+      return "the firmware has another version than the device file expects; "
+             "load that version, or correct the device file";
     case Trouble::kShort:
       return "reports have a wrong size; the device file does not fit this device";
     case Trouble::kCorrupt:

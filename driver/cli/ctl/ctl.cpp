@@ -91,10 +91,9 @@ int sendScene(const CtlArguments& options, Json request) {
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
   const auto waits = [] {
-    std::fprintf(
-        stderr,
-        "the daemon still sets up the models; its log says what it waits for (Ctrl-C ends this command, not the "
-        "set-up)\n");
+    std::fprintf(stderr,
+                 "the daemon still sets up the models; "
+                 "its log says what it waits for (Ctrl-C ends this command, not the set-up)\n");
   };
   return show(options, client->askPatiently(document::jsonLine(request), numbers, waits), scene);
 }

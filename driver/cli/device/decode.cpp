@@ -291,15 +291,15 @@ void addEncode(const Command& device, int& exit_code) {
   command.addFlag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
   command.addOption("-o,--out", options->out, "file to write; - for standard output");
   command.footer(
-      "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, "
-      "follow,\n"
+      "Each row of the CSV is one report. "
+      "Its header names the columns: torque1,torque2 [N m, N], reference1, enable, follow,\n"
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, clock, fault, calibrated. "
-      "Without "
-      "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
-      "and\nescapes are added. Tables of `device kinematics` are understood: tau1,... are the torques; with "
-      "--from-arm,\nq1,... are the positions, or x,y,z is the tip in the device frame; other columns are left out. In "
-      "a "
-      "table\nwritten by `device decode`, only the rows of good reports are used.\n\n"
+      "Without a\n"
+      "header they are the torques or, with --from-arm, the positions of all joints. "
+      "Constants, counters, checksums and\n"
+      "escapes are added. Tables of `device kinematics` are understood: tau1,... are the torques; with --from-arm,\n"
+      "q1,... are the positions, or x,y,z is the tip in the device frame; other columns are left out. In a table\n"
+      "written by `device decode`, only the rows of good reports are used.\n\n"
       "Examples:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");

@@ -145,8 +145,8 @@ void addDeviceNew(const Command& app, int& exit_code) {
   command.footer(
       "The file is checked as soon as it is written. Every number in it is a guess until you have measured it.\n\n"
       "Examples:\n  hapticd device new my-arm\n"
-      "  hapticd device new my-arm --kind phantom --id 16c0:0486 --lengths 0.21,0.17 --counts 4000 --gear 9.5 --bits "
-      "24");
+      "  hapticd device new my-arm --kind phantom --id 16c0:0486 "
+      "--lengths 0.21,0.17 --counts 4000 --gear 9.5 --bits 24");
   command.callback([command, options, &exit_code] { exit_code = makeNew(command, *options); });
 }
 

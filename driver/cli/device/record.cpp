@@ -88,8 +88,8 @@ void addDeviceRecord(const Command& app, int& exit_code) {
   command.footer(
       "The layout of the reports need not be right yet: only usb, exchange, rate, endpoints and startup are used, and "
       "a\npolled arm gets the output report with its motors off.\n\n"
-      "Example:\n  hapticd device record my-arm.yaml --for 5 -o capture.txt && hapticd device decode my-arm.yaml "
-      "capture.txt");
+      "Example:\n"
+      "  hapticd device record my-arm.yaml --for 5 -o capture.txt && hapticd device decode my-arm.yaml capture.txt");
   command.callback([options, &exit_code] { exit_code = record(*options); });
 }
 

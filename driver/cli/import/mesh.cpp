@@ -148,9 +148,8 @@ void warnOfSize(const std::string& out, double size) {
         out.c_str(), size);
   else if (size < kTooSmall)
     std::fprintf(stderr,
-                 "warning: %s: %.3g mm large from corner to corner, too small to be felt; is --scale (metres per unit "
-                 "of the imported file) "
-                 "right?\n",
+                 "warning: %s: %.3g mm large from corner to corner, too small to be felt; "
+                 "is --scale (metres per unit of the imported file) right?\n",
                  out.c_str(), size * 1e3);
 }
 

@@ -277,11 +277,10 @@ struct InfoArguments {
 int partInfo(const InfoArguments& options) {
   const std::string& file = options.file;
   if (file.ends_with(".yaml") || file.ends_with(".yml"))
-    return fail(kBadInput,
-                file +
-                    ": a YAML file, expected a part (.hpart); a model file needs no import: a scene names it "
-                    "(geometry: " +
-                    file + "), and hapticd check SCENE checks both");
+    return fail(kBadInput, file +
+                               ": a YAML file, expected a part (.hpart); "
+                               "a model file needs no import: a scene names it (geometry: " +
+                               file + "), and hapticd check SCENE checks both");
   const auto bytes = readRegular(file, brep::kMostPartBytes);
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
@@ -322,8 +321,8 @@ void addPart(const Command& app, int& exit_code) {
       .excludes("--json")
       .excludes("--feature");
   info.footer(
-      "Examples:\n  hapticd part info bracket.hpart\n  hapticd part info engine.hpart --axes    # where a body can "
-      "turn");
+      "Examples:\n  hapticd part info bracket.hpart\n"
+      "  hapticd part info engine.hpart --axes    # where a body can turn");
   info.callback([options, &exit_code] { exit_code = partInfo(*options); });
 }
 

@@ -37,9 +37,8 @@ std::string whyNoPlugin(const std::string& path) {
   }
   if (isSharedObject(path)) return "";
   return path +
-         " is not a plugin, expected a shared object (FILE.so); a scene or a device file is checked with: hapticd "
-         "check "
-         "FILE";
+         " is not a plugin, expected a shared object (FILE.so); "
+         "a scene or a device file is checked with: hapticd check FILE";
 }
 
 }  // namespace hapticd::cli

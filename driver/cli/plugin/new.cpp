@@ -138,12 +138,11 @@ int makeNew(const NewPluginArguments& options) {
   }
   printNextSteps(target.string(), options.name, options.language == "c");
   if (const auto same = catalog().shape(options.name))
-    std::fprintf(
-        stderr,
-        "warning: there is a plugin \"%s\" already, in %s: where both folders are searched, one hides the "
-        "other\n  fix: choose another name, unless you mean to replace it; hapticd plugin list shows which one "
-        "is used\n",
-        (*same)->name.c_str(), (*same)->file.c_str());
+    std::fprintf(stderr,
+                 "warning: there is a plugin \"%s\" already, in %s: where both folders are searched, one hides the "
+                 "other\n  fix: choose another name, unless you mean to replace it; "
+                 "hapticd plugin list shows which one is used\n",
+                 (*same)->name.c_str(), (*same)->file.c_str());
   return kWorked;
 }
 

@@ -23,8 +23,8 @@ std::string noteOf(const watch::QuarantinedPlugin& entry) {
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))
     return kInQuarantine + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
   return "NOTE: " + entry.fileForPeople() + " ended a run by " + entry.reason +
-         "; the file has changed since, or is another one, so it runs again; once it is repaired: hapticd plugin "
-         "clear " +
+         "; the file has changed since, or is another one, so it runs again; "
+         "once it is repaired: hapticd plugin clear " +
          entry.plugin;
 }
 

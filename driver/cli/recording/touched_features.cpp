@@ -90,8 +90,8 @@ std::string withoutForce(std::uint64_t ticks, double rate) {
   if (ticks == 0) return "";
   char text[160];
   std::snprintf(text, sizeof text,
-                "; for %.3g s of it the model gave no force (it was disabled or silenced, or waited until the tip had "
-                "left it)",
+                "; for %.3g s of it the model gave no force (it was disabled or silenced, "
+                "or waited until the tip had left it)",
                 static_cast<double>(ticks) / rate);
   return text;
 }

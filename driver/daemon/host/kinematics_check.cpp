@@ -52,9 +52,8 @@ std::string complaint(Eigen::Index joint, bool turns, const Twist& is, const Twi
   const auto rows = [turns](const Twist& twist) -> Eigen::Vector3d {
     return turns ? twist.tail<3>() : twist.head<3>();
   };
-  return "has a Jacobian that is not the derivative of its forward kinematics, so a force would have a wrong direction "
-         "or "
-         "size: with the joints at " +
+  return "has a Jacobian that is not the derivative of its forward kinematics, "
+         "so a force would have a wrong direction or size: with the joints at " +
          placeText(q, n) + ", joint " + std::to_string(joint + 1) +
          (turns ? " turns the tip by " : " moves the tip by ") + said(rows(is)) + (turns ? " rad" : " m") +
          " per rad (or m) of the joint, but column " + std::to_string(joint + 1) + " of its Jacobian has " +

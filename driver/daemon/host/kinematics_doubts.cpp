@@ -194,9 +194,8 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
   if (std::string without = placesWithoutNumbers(calls); any && !without.empty()) doubts.push_back(std::move(without));
   if (any && pullsDown(calls))
     doubts.push_back(
-        "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; expected "
-        "those "
-        "that hold it up: tau = - sum of m J^T g");
+        "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; "
+        "expected those that hold it up: tau = - sum of m J^T g");
   if (const char axis = any ? pushesAside(calls) : '\0'; axis != 0)
     doubts.push_back(std::string("the torques of its gravity() push the tip aside and never up, if gravity is along ") +
                      axis + ": are two of its components exchanged? Expected tau = - sum of m J^T g");
@@ -264,8 +263,8 @@ std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_devic
   std::snprintf(
       text, sizeof text,
       "the torques of gravity() are more than the motors give at %d of %d places and mountings, up to %.4g N m "
-      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; masses must be "
-      "in kg",
+      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; "
+      "masses must be in kg",
       beyond, asked, worst * info.max_torque[joint], joint + 1, info.max_torque[joint]);
   return text;
 }

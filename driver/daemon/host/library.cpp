@@ -49,8 +49,8 @@ Result<const Entry*> checkedEntry(const Result<const void*>& symbol_at, const st
   const auto* entry = static_cast<const Entry*>(*symbol_at);
   if (entry->magic != magic)
     return Error{file.string() + " is not a " + what + ": the data at " + symbol +
-                 " does not begin with the magic number of the interface\n  fix: define it with HAPTICD_SHAPES or "
-                 "HAPTICD_DEVICES"};
+                 " does not begin with the magic number of the interface\n"
+                 "  fix: define it with HAPTICD_SHAPES or HAPTICD_DEVICES"};
   if (entry->abi_major != HSP_ABI_MAJOR)
     return Error{file.string() + ": built for version " + std::to_string(entry->abi_major) + "." +
                  std::to_string(entry->abi_minor) + " of the interface; this hapticd supports version " +

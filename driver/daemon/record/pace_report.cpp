@@ -54,9 +54,8 @@ std::string paceText(const RunReport& report, double asked_hz) {
   for (const ModelReport& model : report.models) text += slowText(model, period_us, report.virtual_time ? 20 : 1000);
   if (report.virtual_time && late >= kFew && late * 20 >= all)
     text += fmt::format(
-        "slow: {} of {} ticks took longer than their period of {:.2g} ms: at this cost {:.0f} Hz would not be held on "
-        "a "
-        "real clock\n",
+        "slow: {} of {} ticks took longer than their period of {:.2g} ms: "
+        "at this cost {:.0f} Hz would not be held on a real clock\n",
         late, all, period_us * 1e-3, asked_hz);
   if (text.empty() && late >= kFew && late * 20 >= all)
     for (const ModelReport& model : report.models)

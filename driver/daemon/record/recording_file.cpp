@@ -59,8 +59,8 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
   if (!lockFile(file, fd))
     return Error{file +
-                 ": another run records into it, or a program that reads it keeps it open; expected the name of "
-                 "another file"};
+                 ": another run records into it, or a program that reads it keeps it open; "
+                 "expected the name of another file"};
   struct stat there{};
   const bool known = fstat(fd, &there) == 0;
   if (known && takesMessages(there))

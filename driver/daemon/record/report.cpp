@@ -65,10 +65,10 @@ std::string slowArmsText(const RunReport& report) {
   const bool late = static_cast<double>(report.overruns) > kMany * static_cast<double>(report.ticks);
   if (report.virtual_time || !late || !(arms > kMost * report.compute_us.quantile(0.5))) return "";
   return fmt::format(
-      "  slow arm  ticks come late because of the arms: read() and write() of their modules take {:.0f} us in the "
-      "median "
-      "tick\n  fix: hapticd device check FILE (the device file) names the call; what waits belongs in a thread of the "
-      "module's own\n",
+      "  slow arm  ticks come late because of the arms: "
+      "read() and write() of their modules take {:.0f} us in the median tick\n"
+      "  fix: hapticd device check FILE (the device file) names the call; "
+      "what waits belongs in a thread of the module's own\n",
       arms);
 }
 
@@ -94,8 +94,8 @@ std::string outsideText(const ModelReport& model) {
   const uint64_t ticks = model.contact.contactTicks();
   if (outside.ticks == 0 || (ticks > 0 && outside.ticks <= ticks)) return "";
   return fmt::format(
-      "  outside   {} pushed in {} ticks from outside (depth_m below 0), with up to {:.2f} N: only ticks inside count "
-      "as contact\n",
+      "  outside   {} pushed in {} ticks from outside (depth_m below 0), "
+      "with up to {:.2f} N: only ticks inside count as contact\n",
       model.name, outside.ticks, outside.max_force);
 }
 
@@ -179,8 +179,8 @@ std::string faultTimeText(const LimitReport& device, const RunReport& report) {
   if (device.faults == 0) return "";
   const double seconds = report.rate_hz > 0 ? static_cast<double>(device.fault_ticks) / report.rate_hz : 0;
   return fmt::format(
-      "faults of {}: {} in this run, {:.2f} s without force, which are left out of contact, depth and "
-      "force above\n",
+      "faults of {}: {} in this run, {:.2f} s without force, "
+      "which are left out of contact, depth and force above\n",
       device.device, device.faults, seconds);
 }
 

@@ -154,8 +154,8 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   if ((id == "usb.vendor" || id == "usb.product" || id == "usb.vid" || id == "usb.pid") && info_.indexOf("usb.id") >= 0)
     return in_->problem(entry.key, key,
                         "unknown parameter of " + info_.name +
-                            "; expected one key for both numbers: id: \"VENDOR:PRODUCT\", in hexadecimal, such as "
-                            "\"16c0:0486\"");
+                            "; expected one key for both numbers: id: \"VENDOR:PRODUCT\", in hexadecimal, "
+                            "such as \"16c0:0486\"");
   constexpr size_t kMostListed = 24;
   // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));

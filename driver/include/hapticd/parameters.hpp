@@ -179,8 +179,8 @@ hsp_status guarded(const hsp_host* host, const char* before, const char* what, h
     logError(host, std::string(before) + e.what());
   } catch (...) {
     logError(host, std::string(before) + what +
-                       " threw an object that is not a std::exception; expected std::runtime_error with a text for the "
-                       "user");
+                       " threw an object that is not a std::exception; "
+                       "expected std::runtime_error with a text for the user");
   }
   return failed;
 }

@@ -124,8 +124,8 @@ struct ShapeClass {
       static_assert(
           requires(T& t, const hsp_probe& probe, hsp_contact& contact) { t.touch(probe, *step, contact); },
           "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
-          "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
-          "is public");
+          "hsp_status step(const hsp_step&) noexcept; "
+          "check the name and the arguments of the function, and that it is public");
       return touchEach(*step, [&](const hsp_probe& probe, hsp_contact& contact, uint32_t)
                                   HSP_RT { return self(shape).touch(probe, *step, contact); });
     }

@@ -67,14 +67,14 @@ std::string wrongByteOrder(const Field& field, const std::vector<double>& positi
   if (as_read.moving < kFewestSteps) return "";
   if (bits > 8 && bits % 8 == 0 && field.bit_skip == 0 && bothEndsChange(codes, bits) &&
       as_read.sum > kSmoother * stepsOf(other, bits).sum)
-    return "moves far more smoothly from one report to the next if its bytes are read in the other order: give "
-           "endian: " +
+    return "moves far more smoothly from one report to the next if its bytes "
+           "are read in the other order: give endian: " +
            std::string(field.big_endian ? "little" : "big");
   if (!field.wraps || 2 * as_read.large < as_read.moving) return "";
   return "jumps by more than an eighth of its type's range in " + std::to_string(as_read.large) + " of " +
          std::to_string(codes.size() - 1) +
-         " steps, like a random number: look at its byte order (endian), its first byte (at), and the width of its "
-         "type";
+         " steps, like a random number: look at its byte order (endian), "
+         "its first byte (at), and the width of its type";
 }
 
 }  // namespace hapticd::capture

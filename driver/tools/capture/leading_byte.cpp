@@ -71,8 +71,8 @@ std::string sizeToGive(size_t given, size_t size) {
 std::string zeroWords(size_t given, size_t size, bool padded) {
   return "each report begins with 0x00 and has " +
          (size == given + 1 ? std::string("one byte too many") : std::to_string(size) + " bytes") +
-         ": some programs put 00 in front of reports without an id; if yours did, remove it from each line of the "
-         "capture, and " +
+         ": some programs put 00 in front of reports without an id; "
+         "if yours did, remove it from each line of the capture, and " +
          (given == size - 1 ? "leave wire.input as it is" : "give " + sizeToGive(given, size - 1)) +
          (padded
               ? "; if it belongs to the report instead, and the last bytes are padding, give " + sizeToGive(given, size)

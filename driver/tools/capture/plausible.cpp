@@ -83,8 +83,8 @@ std::string tooLongAWay(const JointSeries& course, Stops stops) {
   const double way = course.most - course.least, room = stops.high - stops.low;
   return "moves over " + number(way) + " rad, but its arm.limits are only " + number(room) +
          " rad apart: scale is at least " + number(way / room) +
-         " times too large: is it in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the "
-         "joint?";
+         " times too large: is it in rad (for degrees: scale_degrees), "
+         "with the turns of the motor in one turn of the joint?";
 }
 
 /// [rad] The greatest motion of a joint that is called tiny although its number changed by many counts, where its stops
@@ -107,9 +107,8 @@ std::string tinyWays(const std::map<size_t, JointSeries>& courses) {
   if (courses.empty()) return "";
   return "the numbers of all joints changed by more than 500 counts, but no joint moved by more than " +
          number(widest) +
-         " rad: if they were moved by hand, scale is far too small; it must be in rad: 2 pi / (counts of a motor turn "
-         "* "
-         "motor turns of one joint turn)\n";
+         " rad: if they were moved by hand, scale is far too small; "
+         "it must be in rad: 2 pi / (counts of a motor turn * motor turns of one joint turn)\n";
 }
 
 /// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.

@@ -57,8 +57,8 @@ std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
     changes += reports[i]->state.starts != reports[i - 1]->state.starts ? 1 : 0;
   if (10 * changes < reports.size()) return "";
   return "the field starts has another number in " + std::to_string(changes) + " of " + std::to_string(reports.size()) +
-         " reports, as if the device restarted each time; is the field a counter ({is: counter}) or a clock ({is: "
-         "time})?\n";
+         " reports, as if the device restarted each time; "
+         "is the field a counter ({is: counter}) or a clock ({is: time})?\n";
 }
 
 /// Returns a hint if a counter does not count, but does so in the other byte order.

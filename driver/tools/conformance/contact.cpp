@@ -59,11 +59,9 @@ Verdict contactFound(const Recipe& recipe, uint64_t) {
     return "NOT TESTED: its depth is nowhere above 0, not even 1 mm behind the foot points that it names; expected "
            "depth_m above 0 inside: look at the sign of depth_m and at point";
   if (touch.felt) return fieldOnly();
-  return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin from 1 "
-         "mm "
-         "to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell where the shape "
-         "is "
-         "by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
+  return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin "
+         "from 1 mm to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell "
+         "where the shape is by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
 }
 
 /// Returns why forces pull the hand in. The whole press is judged, because a detent may pull for part of it. The
@@ -261,8 +259,8 @@ std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double exp
   const double jump = (now - before).norm();
   if (jump <= kRoom + kLever * explained) return "";
   return "the torque jumps by " + text(jump) +
-         " N m where the surface is met; expected it to grow from 0 with the depth, and about the probe, not about the "
-         "model's origin";
+         " N m where the surface is met; "
+         "expected it to grow from 0 with the depth, and about the probe, not about the model's origin";
 }
 
 /// Tests that the force does not jump where the surface is met, because a jump buzzes even if the slope below the

@@ -33,9 +33,8 @@ std::string firstDifference(const std::vector<Answer>& a, const std::vector<Answ
 }
 
 constexpr const char* kForget =
-    "; expected reset() to forget what earlier steps have left: foot points that are followed, stuck points of "
-    "friction, "
-    "filters, detents";
+    "; expected reset() to forget what earlier steps have left: "
+    "foot points that are followed, stuck points of friction, filters, detents";
 
 /// [N] Returns the force at `to` in the first steps after reset(). Without a jump, a shape can only forget in reset().
 std::vector<Vector3d> forcesAfterReset(Subject& subject, const Vector3d& to) {

@@ -59,9 +59,8 @@ std::string jumped(double newtons, double metres, double stiffness) {
   return "the force jumped by " + text(newtons) + " N while the probe moved " + text(metres) +
          " m: the claimed stiffness (report.max_stiffness, " + text(stiffness) + " N/m) explains " +
          text(stiffness * metres) +
-         " N of it, and it is the third such jump; look for a length that is not in m, a gap in the law of the force, "
-         "or "
-         "a claim that is too small";
+         " N of it, and it is the third such jump; "
+         "look for a length that is not in m, a gap in the law of the force, or a claim that is too small";
 }
 
 Verdict forceContinuous(const Recipe& recipe, uint64_t) {
@@ -134,16 +133,16 @@ class LengthsInMetres {
   std::string wrong() const {
     constexpr double kFar = 3;  // factor, because a shape may measure its depth in another way, but in m
     if (2 * flat_ > outside_)
-      return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; expected minus the distance to the "
-             "surface";
+      return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; "
+             "expected minus the distance to the surface";
     const double rate = std::abs(medianOf(rates_)), foot = medianOf(feet_);
     if (rate > kFar || rate < 1 / kFar)
       return "depth_m changes by " + text(rate) +
              " m where the probe moves by 1 m along the normal; expected 1: look for a depth that is not in m";
     if (foot > kFar || foot < 1 / kFar)
       return "point is " + text(foot) +
-             " times as far from the probe as depth_m says; expected the foot on the surface, in m, in the model's "
-             "frame";
+             " times as far from the probe as depth_m says; "
+             "expected the foot on the surface, in m, in the model's frame";
     return "";
   }
 

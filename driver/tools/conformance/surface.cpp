@@ -123,8 +123,8 @@ std::string offTheNormal(Subject& subject, const Place& place, bool at_rest) {
            " N on a probe " + (at_rest ? "at rest" : "that moves") + " lies " + text(angle * 180 / M_PI) +
            " degrees off its normal; expected " +
            (at_rest ? "force = normal times a size, or, for friction, no HSP_R_PUSHES in activate()"
-                    : "no HSP_R_PUSHES in activate() of a shape that has friction, viscosity or damping along the "
-                      "surface");
+                    : "no HSP_R_PUSHES in activate() of a shape that has friction, "
+                      "viscosity or damping along the surface");
   });
 }
 

@@ -88,8 +88,7 @@ std::string forgotten(const hdv_info& info) {
   if (boundless > 0)
     text = "hdv_info.max_torque is 0 for " + of(boundless) +
            ", so nothing bounds the torques that are sent, and check cannot compare limits.force with the motors; "
-           "expected "
-           "the largest torque of each joint [N m; N for a sliding joint]";
+           "expected the largest torque of each joint [N m; N for a sliding joint]";
   if (fixed > 0)
     text += std::string(text.empty() ? "" : "; ") + "hdv_info.position_min and position_max are 0 for " + of(fixed) +
             ", so the range of the arm is unknown; expected the stops [rad; m for a sliding joint], or infinite ones";
@@ -110,8 +109,8 @@ Finding claims(const scene::Device& device) {
                            ", so `pace: device` would fall back to the clock; expected both, or neither");
   if ((claimed & HDV_C_CALIBRATION) != 0 && !has(HDV_EXT_CALIBRATION))
     return Finding::warned("open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
-                           ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
-                           "HDV_S_CALIBRATED");
+                           ": hapticd device calibrate cannot calibrate it, "
+                           "and no force comes before samples carry HDV_S_CALIBRATED");
   if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return Finding::warned(odd);
   if (const std::string bounds = forgotten(opened.arm->info()); !bounds.empty()) return Finding::warned(bounds);
   if (const std::string heavy =

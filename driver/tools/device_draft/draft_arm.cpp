@@ -25,9 +25,8 @@ std::string phantomOf(const DeviceDraft& draft) {
 
 constexpr const char* kNoLengths = "    # lengths: [a, b, c, d, e, f, r, s]    # m; if left out, those of a Falcon\n";
 constexpr const char* kDeltaMasses =
-    "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: the weight is not carried; if left out, "
-    "guesses "
-    "for a Falcon\n";
+    "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: the weight is not carried; "
+    "if left out, guesses for a Falcon\n";
 
 std::string deltaOf(const DeviceDraft& draft) {
   if (draft.lengths.empty()) return std::string(kNoLengths) + kDeltaMasses;
@@ -47,8 +46,8 @@ constexpr const char* kBelowChain =
 
 std::string chainOf(const DeviceDraft& draft) {
   std::string text =
-      "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
-      "joint\n";
+      "    dh:                           # a, alpha, d, theta: "
+      "m, rad (standard Denavit-Hartenberg), one row per joint\n";
   for (int i = 0; i < draft.joints; ++i)
     text += fmt::format("      - [{:g}, {:.9g}, 0, 0]\n",
                         draft.lengths.empty() ? 0.2 : DeviceDraft::ofJoint(draft.lengths, i),

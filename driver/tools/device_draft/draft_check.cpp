@@ -41,8 +41,8 @@ std::string wrongChecksum(const std::string& name) {
     return "--checksum crc: a CRC without a name needs its numbers, which only the file can give; expected the name of "
            "a CRC, such as crc16-modbus, or none";
   return "--checksum " + name + ": no checksum has this name" + codec::suggestMethod(name) +
-         "; expected none, sum, xor or the name of a CRC, such as crc8, crc16 or crc16-modbus (driver/docs/devices.md "
-         "lists all)";
+         "; expected none, sum, xor or the name of a CRC, such as crc8, "
+         "crc16 or crc16-modbus (driver/docs/devices.md lists all)";
 }
 
 /// Returns true for two numbers of one to four hexadecimal digits, such as 16c0:0486.

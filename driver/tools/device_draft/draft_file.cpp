@@ -24,8 +24,8 @@ name: {name}
 {wire})";
 
 constexpr const char* kEnable =
-    "# in limits: enable: {button: 0}   # forces only while the button is held; buttons count from 0 here, from 1 in "
-    "wire\n";
+    "# in limits: enable: {button: 0}   # forces only while the button is held; "
+    "buttons count from 0 here, from 1 in wire\n";
 
 }  // namespace
 

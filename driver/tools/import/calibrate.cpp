@@ -260,8 +260,8 @@ Result<void> fitShear(const Body& body, const std::vector<Indentation>& dents, c
     wider += error / static_cast<double>(dents.size());
     if (std::fabs(error) > kGood)
       std::fprintf(stderr,
-                   "warning: at (%.4g, %.4g, %.4g) m the dent of the body is %.3f of the depth, but the file of dents "
-                   "says %.3f\n",
+                   "warning: at (%.4g, %.4g, %.4g) m the dent of the body is %.3f of the depth, "
+                   "but the file of dents says %.3f\n",
                    dents[i].beside.x(), dents[i].beside.y(), dents[i].beside.z(), fit->shares[i], dents[i].share);
   }
   if (worst > kGood && wider > 0 && fit->reach < kNoReach * spacing)

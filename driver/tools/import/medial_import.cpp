@@ -133,9 +133,8 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
 void printFeel(const MedialImport& options) {
   if (endsWith(options.out, ".ma")) {
     std::printf(
-        "a .ma file holds no material: the scene gives stiffness, damping and mass; the hand feels the body as it "
-        "moves "
-        "with dynamics: felt, and at rest without\n");
+        "a .ma file holds no material: the scene gives stiffness, damping and mass; "
+        "the hand feels the body as it moves with dynamics: felt, and at rest without\n");
     return;
   }
   const std::string stiffness = options.young > 0 ? fmt::format("the stiffness of {:g} Pa in a layer of {:g} mm",

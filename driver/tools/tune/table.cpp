@@ -26,9 +26,8 @@ std::string frontText(const Findings& findings) {
   if (!beaten.empty())
     text += "\nfor each of these, another is as accurate and cheaper, or as cheap and more accurate:\n" + beaten;
   return text + "\n" + noise(findings) +
-         "\nthe times are those of ticks that follow each other at once; a run sleeps between its ticks, so its caches "
-         "are "
-         "colder and its steps take longer\n";
+         "\nthe times are those of ticks that follow each other at once; "
+         "a run sleeps between its ticks, so its caches are colder and its steps take longer\n";
 }
 
 std::string servoText(const Findings& findings) {

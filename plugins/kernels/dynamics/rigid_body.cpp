@@ -48,8 +48,8 @@ void validate(const RigidBodyLaw& law) {
   validate(law.limits);
   if (law.joint == Joint::kFree && law.limits.given())
     throw std::invalid_argument(
-        "limits: a free body has no axis along which a stop could hold it; expected joint: hinge or slider beside "
-        "limits");
+        "limits: a free body has no axis along which a stop could hold it; "
+        "expected joint: hinge or slider beside limits");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
     throw std::invalid_argument("axis: all three numbers are 0, so it has no direction; give one such as [0, 1, 0]");
 }

@@ -208,8 +208,8 @@ class Checker {
       const CurveKind kind = part_.curves3[e.curve].kind;
       if (kind == CurveKind::kCircle || kind == CurveKind::kEllipse)
         at.need(e.t1 - e.t0 <= kMostTurn && std::abs(e.t0) <= kFarthestAngle,
-                "t0 and t1 span more than one turn of the circle or ellipse, or are beyond 1000 rad; expected at most "
-                "one turn");
+                "t0 and t1 span more than one turn of the circle or ellipse, or are beyond 1000 rad; "
+                "expected at most one turn");
     }
     std::uint32_t coedge = e.first_coedge, met = 0;
     for (; coedge != kNone && met <= e.coedge_count; ++met) {

@@ -133,8 +133,8 @@ void readRecords(const Section& section, std::span<const std::byte> data, std::v
 Json readHeader(std::span<const std::byte> bytes) {
   if (bytes.size() < kHeadLength || std::memcmp(bytes.data(), kPartMagic, kMagicLength) != 0)
     throw PartError(
-        "not a part file (.hpart, format hapticd-part/1), expected one that hapticd import wrote: hapticd import FILE "
-        "-o PART.hpart");
+        "not a part file (.hpart, format hapticd-part/1), expected one that hapticd import wrote: "
+        "hapticd import FILE -o PART.hpart");
   std::uint32_t length = 0;
   std::memcpy(&length, bytes.data() + kMagicLength, sizeof length);
   if (length > bytes.size() - kHeadLength) throw PartError("the header is cut off; expected a complete file");

@@ -62,5 +62,38 @@ TEST(Motors, KeepTheDirectionOfTheForceWhenOneIsAtItsLimit) {
   EXPECT_EQ(arm.limiter().clips().ticks[static_cast<size_t>(Limit::kMotors)], static_cast<uint64_t>(limited));
 }
 
+TEST(Motors, CarryTheWeightFirstAndPushWithWhatIsLeft) {
+  scene::Device device = strongPremium();
+  device.limits.weight.reset();
+  auto opened = Arm::open(device, scene::Servo{}, {1000, false}, kSilent);
+  ASSERT_TRUE(opened) << opened.error();
+  Arm& arm = **opened;
+  const Vector3d gravity(0, -9.81, 0);
+  ASSERT_TRUE(arm.start(0, gravity));
+  arm.carryWeight(true);
+  int limited = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d force = 60 * Vector3d(std::sin(i), std::sin(2 * i + 1), std::cos(3 * i)).normalized();
+    ASSERT_TRUE(arm.read(static_cast<Nanoseconds>(i), 0).valid);
+    arm.write(static_cast<Nanoseconds>(i), 1e-3, force, Vector3d::Zero());
+    const hdv_ext_kinematics& kinematics = arm.device().kinematics();
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, 3);
+    kinematics.jacobian(arm.device().handle(), arm.sample().position, J.data());
+    Vector3d weight;
+    kinematics.gravity(arm.device().handle(), arm.sample().position, gravity.data(), weight.data());
+    ASSERT_GT(weight.norm(), 1e-2) << "no weight: no test";
+    const Vector3d asked = J.topRows<3>().transpose() * force, sent(arm.command().torque), pushed = sent - weight;
+    const double share = pushed.dot(asked) / asked.squaredNorm();
+    ASSERT_LE(share, 1 + 1e-9);
+    ASSERT_LT((pushed - share * asked).norm(), 1e-9 * asked.norm()) << "the force points where it pointed";
+    const Eigen::Array3d use = sent.array().abs() / Eigen::Map<const Eigen::Array3d>(arm.info().max_torque);
+    ASSERT_LE(use.maxCoeff(), 1 + 1e-12);
+    if (share > 1 - 1e-9) continue;
+    ++limited;
+    ASSERT_NEAR(use.maxCoeff(), 1, 1e-9) << "one motor gives all that it can";
+  }
+  EXPECT_GT(limited, 100) << "no motor was at its limit: no test";
+}
+
 }  // namespace
 }  // namespace hapticd::servo

@@ -37,9 +37,9 @@ std::string describeSlow(double servo_rate, double arm_rate, double device_force
   char text[320], instead[48] = "";
   if (asked > 0) std::snprintf(instead, sizeof instead, " instead of %.3g N", asked);
   std::snprintf(text, sizeof text,
-                "%s: after a fault the motors may keep the last command for %.3g ms, so the force is limited to %.3g "
-                "N%s, which moves "
-                "a free arm by at most 1 mm and gives it at most 5 mJ; expected at least %.0f Hz for the full force",
+                "%s: after a fault the motors may keep the last command for %.3g ms, so the force "
+                "is limited to %.3g N%s, which moves a free arm by at most 1 mm and gives it at most 5 mJ; "
+                "expected at least %.0f Hz for the full force",
                 by_arm ? "its own rate is low" : "the servo's rate is low", held * 1e3, most, instead,
                 std::ceil(by_arm ? kArmRateInFull : kServoRateInFull));
   return text;

@@ -90,8 +90,8 @@ void EventLog::note(const hapticd_event& event) {
 
 EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
   return {HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm].name : "",
-          "the button of limits.enable was down when the run began, so it does not enable forces; release it, then "
-          "press it"};
+          "the button of limits.enable was down when the run began, so it does not enable forces; "
+          "release it, then press it"};
 }
 
 EventLog::Named EventLog::device(const hapticd_event& event) const {

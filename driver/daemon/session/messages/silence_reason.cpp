@@ -96,15 +96,15 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
       return who +
              "moved its body at more than 20 m/s against the hand: it runs away, by a wrong sign of what moves it (the "
              "force on the body is the opposite of the force on the probe), by a spring that is too stiff for its "
-             "integrator, or because the scene gives it too little mass or drag for its spring; it was silenced; test "
-             "it with: " +
+             "integrator, or because the scene gives it too little mass or drag for its spring; "
+             "it was silenced; test it with: " +
              check;
     case ShapeFault::kGives:
       return who +
              "gave the hand energy from nowhere: its surface turned round by itself, or pushed more on the way out "
              "than on the way in, as a damping does that is too large for the rate, or its force went along with the "
-             "hand; a shape that gives energy on purpose reports HSP_R_JUMPS, and may give more; it was silenced; test "
-             "it with: " +
+             "hand; a shape that gives energy on purpose reports HSP_R_JUMPS, and may give more; "
+             "it was silenced; test it with: " +
              check;
     case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;

@@ -136,8 +136,8 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
     log::write(HSP_LOG_WARNING, "",
                "the folder /dev/shm/hapticd-" + std::to_string(geteuid()) +
                    " does not belong to you: no other program can watch or change this run, and a crash leaves no "
-                   "black box\n  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory that only you may "
-                   "write to");
+                   "black box\n"
+                   "  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory that only you may write to");
     return outside;
   }
   clearDead(outside->folder_);

@@ -70,8 +70,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   if (auto opened = runner->openArms(log); !opened) return notOpened(opened, scene, options.virtual_time);
   if (options.virtual_time && !onlySimulated(runner->arms_))
     return Error{
-        "--virtual-time runs faster than a real clock, but the scene names real hardware; expected simulated devices "
-        "only"};
+        "--virtual-time runs faster than a real clock, but the scene names real hardware; "
+        "expected simulated devices only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
   runner->openEventLog();
   LoopSettings settings = loopSettings(scene, options, onlySimulated(runner->arms_));

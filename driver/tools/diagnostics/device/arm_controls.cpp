@@ -122,10 +122,9 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   scene::Scene alone;
   alone.devices.push_back(description);
   const double force = opened ? servo::maxForceOf(alone, {info}) : servo::maxForceOf(alone);
-  std::vector<Control> controls{
-      {"H4 H6 H8 H9 H13 H17 H21", "always", ControlState::kOn,
-       "numbers are finite, orientations of unit length, forces explained by motion; a fault takes the force away "
-       "within 2 ms"}};
+  std::vector<Control> controls{{"H4 H6 H8 H9 H13 H17 H21", "always", ControlState::kOn,
+                                 "numbers are finite, orientations of unit length, forces explained by motion; "
+                                 "a fault takes the force away within 2 ms"}};
   addLimits(description.limits, force, simulated, opened ? info.buttons : 32, controls);
   const auto has = [&](const char* name) { return device.description().extension(device.handle(), name) != nullptr; };
   controls.push_back({"H26 H33", "cut by a watchdog thread", onIf(has(HDV_EXT_CUT)),

@@ -124,8 +124,8 @@ void tooMuch(const Node* list, const char* key, double limit, const char* what, 
       std::any_of(warnings.begin(), warnings.end(), [key](const auto& one) { return one.key == key; }))
     return;
   document::report(warnings, file, list->line, list->column, key,
-                   fmt::format("{0:g} {1} is {2} of an arm that a hand moves; the values must be in {1}: {0:g} {3} is "
-                               "{4:g} {1}",
+                   fmt::format("{0:g} {1} is {2} of an arm that a hand moves; "
+                               "the values must be in {1}: {0:g} {3} is {4:g} {1}",
                                given, unit, what, smaller, given / 1000));
 }
 

@@ -130,8 +130,8 @@ TwinPose standOfFlat(const RestPose& rest, const std::string& pose) {
   TwinPose stand;
   stand.center = rest.tip - kHandBegins * rest.push;
   stand.mount = fmt::format(
-      "mount: {{position: {}}}    # the arm's file has none: with {} this puts its tip 7 cm beside the shapes' "
-      "middle, {}\n",
+      "mount: {{position: {}}}    # the arm's file has none: "
+      "with {} this puts its tip 7 cm beside the shapes' middle, {}\n",
       listOf(-stand.center), pose, rest.flat ? "in the plane in which it moves" : "in a direction in which it moves");
   stand.pressing = rest.flat;
   stand.hand = ", normal: " + listOf(rest.push);

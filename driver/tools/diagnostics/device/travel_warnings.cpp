@@ -72,8 +72,8 @@ std::string offsetTurnedRound(const Field& field, const PositionRange& said, con
   };
   if (field.offset == 0 || covers(said) || !covers(other)) return "";
   return fmt::format(
-      "has the wrong sign: this field covers {:.4g} to {:.4g} rad, and arm.limits of joint {} go from {:.4g} to "
-      "{:.4g}; "
+      "has the wrong sign: this field covers {:.4g} to {:.4g} rad, "
+      "and arm.limits of joint {} go from {:.4g} to {:.4g}; "
       "with the other sign it covers {:.4g} to {:.4g} rad: expected ",
       said.low, said.high, field.index + 1, stops.low, stops.high, other.low, other.high);
 }

@@ -293,8 +293,8 @@ void warnOfBulkKeys(const Node& root, const scene::Device& device, document::Pro
   if (const Node* endpoints = wire->find("endpoints"))
     document::report(warnings, file, endpoints->line, endpoints->column, "parameters.wire.endpoints",
                      "has no effect: the module " + module +
-                         " does not choose endpoints; remove this key, or give module: usb_bulk if the arm has bulk "
-                         "endpoints");
+                         " does not choose endpoints; "
+                         "remove this key, or give module: usb_bulk if the arm has bulk endpoints");
   const Node* startup = wire->find("startup");
   for (size_t i = 0; startup != nullptr && i < startup->items.size(); ++i)
     if (const Node* control = startup->items[i].find("control"))

@@ -87,8 +87,8 @@ void checkStill(const HandValues& values, const HandScript& hand) {
   const bool turns = hand.kind == HandScript::Kind::kCircle || hand.kind == HandScript::Kind::kStroke;
   const char* id = hand.rate == 0 ? "hand.rate" : turns || hand.rise > 0 ? nullptr : "hand.rise";
   if (id == nullptr || values.read(id) == nullptr) return;
-  values.tell(id, fmt::format("with 0 {} the hand rests and never does its script, {}; expected a number above 0, or "
-                              "script: hold",
+  values.tell(id, fmt::format("with 0 {} the hand rests and never does its script, {}; "
+                              "expected a number above 0, or script: hold",
                               hand.rate == 0 ? "Hz" : "m", wordOf(hand.kind)));
 }
 
@@ -156,8 +156,8 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
   values.checkTremor("hand.tremor", kTremor, kUsualTremor);
   values.checkTremor("hand.wander", kWander, kUsualWander);
   if (hand.moves() && values.isAbove("hand.lead_in", kLong))
-    values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; the value must be in s: {0:g} ms "
-                                            "is {1:g} s",
+    values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; "
+                                            "the value must be in s: {0:g} ms is {1:g} s",
                                             hand.lead_in, hand.lead_in * kThousandth));
   if (knowsScriptOf(device, "hand.rate", unread)) checkHandRate(values, hand);
   if (knowsScriptOf(device, "hand.stiffness", unread)) checkSpring(values, hand);

@@ -81,8 +81,8 @@ bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& h
       const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
       document::report(
           warnings, key.place, key.id,
-          what + fmt::format("a hand.radius of {:.4g} m, with which it touches a model (it is {:.4g} m "
-                             "now{})",
+          what + fmt::format("a hand.radius of {:.4g} m, "
+                             "with which it touches a model (it is {:.4g} m now{})",
                              *radius, hand.radius, seen.away > 0 ? "; it is a radius, not a diameter" : ""));
       return true;
     }
@@ -104,8 +104,8 @@ std::string mendOf(const scene::Scene& scene, uint32_t index, const HandScript& 
   if (seen.end > 0)
     return fmt::format(
         "a model within the arm's reach: joint {} is at the end of its range there, so the tip cannot follow the hand; "
-        "the middle of {} is at [{:.3g}, {:.3g}, {:.3g}] in the world; move the model (pose.position) or the arm "
-        "(mount.position)",
+        "the middle of {} is at [{:.3g}, {:.3g}, {:.3g}] in the world; "
+        "move the model (pose.position) or the arm (mount.position)",
         seen.end, nearest, middle.x(), middle.y(), middle.z());
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   return fmt::format(
@@ -221,12 +221,11 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
                                : "";
   document::report(
       warnings, key.place, key.id,
-      fmt::format(
-          "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: {} cuts the force in "
-          "{:.0f} % of the ticks with a force; expected a hand that presses less (hand.radius, hand.rise in m) or "
-          "less stiffness",
-          device.name, seen.depth * 1e3, model.name, seen.asked, most, servo::keyOf(strict),
-          100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
+      fmt::format("the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: {} cuts the force in "
+                  "{:.0f} % of the ticks with a force; "
+                  "expected a hand that presses less (hand.radius, hand.rise in m) or less stiffness",
+                  device.name, seen.depth * 1e3, model.name, seen.asked, most, servo::keyOf(strict),
+                  100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 
 /// Warns of a hand that touches a model, but whose arm stands at its own end much of the time: the tip does not follow
@@ -329,20 +328,19 @@ void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems&
       walk.models.begin());
   const double ticks = static_cast<double>(walk.ticks), step = walk.models[slowest].seconds / ticks;
   const std::string what = fmt::format(
-      "the hand was not moved to the end, so what it meets was not judged: {:.2g} s of its motion took {:g} s of "
-      "processor time",
+      "the hand was not moved to the end, so what it meets was not judged: "
+      "{:.2g} s of its motion took {:g} s of processor time",
       ticks * walk.period, kMostProcessor);
   constexpr double kMost = 0.5;  // share of the time
   if (walk.models[slowest].seconds < kMost * kMostProcessor)
     return document::report(warnings, scene.file.string(), 1, 1, "models", what);
   const scene::Model& model = scene.models[slowest];
-  reportInModel(
-      warnings, scene, slowest, "plugin",
-      fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
-                  "measures it",
-                  what, model.name, step * 1e3, walk.period * 1e3,
-                  step > walk.period ? ", and a run silences a plugin that needs more" : "",
-                  shellWord(model.library.string())));
+  reportInModel(warnings, scene, slowest, "plugin",
+                fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); "
+                            "hapticd plugin check {} measures it",
+                            what, model.name, step * 1e3, walk.period * 1e3,
+                            step > walk.period ? ", and a run silences a plugin that needs more" : "",
+                            shellWord(model.library.string())));
 }
 
 }  // namespace

@@ -97,8 +97,8 @@ void checkRange(const GivenModel& given, const char* id) {
                                         "{0:g} degrees, write {1:.4g}",
                                         most, most * M_PI / 180));
   if (joint == "slider" && most > (given.box() ? kSizes * given.size() : kUnknownSize))
-    given.warn({id}, fmt::format("{0:g} m is far for a body that is {1:.3g} m large; the value must be in m: {0:g} mm "
-                                 "is {2:g} m",
+    given.warn({id}, fmt::format("{0:g} m is far for a body that is {1:.3g} m large; "
+                                 "the value must be in m: {0:g} mm is {2:g} m",
                                  most, given.size(), most * 1e-3));
 }
 
@@ -153,8 +153,8 @@ void checkLeastInertia(const GivenModel& given) {
   if (inertia > 0 && inertia < (1 - kRounding) * least)
     given.warn({"inertia"},
                fmt::format("{:g} kg m^2 is less than mass times length squared, {:.3g} kg m^2, and no body "
-                           "has less about its pivot; the value must be the moment about the pivot, not about "
-                           "the centre",
+                           "has less about its pivot; "
+                           "the value must be the moment about the pivot, not about the centre",
                            inertia, least));
 }
 

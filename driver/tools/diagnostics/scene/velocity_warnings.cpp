@@ -63,8 +63,8 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
                           : how.estimator == "kalman" ? "expected a higher servo.rate"
                                                       : fmt::format("expected at most {:.0f}", std::floor(most));
   document::report(warnings, placeInServo(scene, kParameter), kParameter,
-                   fmt::format("{} lags by up to {:.3g} ms: damping and friction act too late, and can push the hand; "
-                               "{}",
+                   fmt::format("{} lags by up to {:.3g} ms: "
+                               "damping and friction act too late, and can push the hand; {}",
                                lags, delay * 1e3, fix));
   return warnings;
 }
@@ -79,9 +79,8 @@ document::Problems wideScales(const scene::Scene& scene) {
     if (scale == nullptr || damping == nullptr || scale->number < kWideScale || damping->number <= 0) continue;
     document::report(
         warnings, scale->place, fmt::format("models[{}].parameters.depth_scale", i),
-        fmt::format("the scale is {:g} m: {} has its full damping of {:g} N s/m only at this depth; at 1 mm it has "
-                    "{:.2g} N s/m; "
-                    "the value must be in m (1 mm is 0.001)",
+        fmt::format("the scale is {:g} m: {} has its full damping of {:g} N s/m only at this depth; "
+                    "at 1 mm it has {:.2g} N s/m; the value must be in m (1 mm is 0.001)",
                     scale->number, scene.models[i].name, damping->number,
                     damping->number * std::pow(1e-3 / scale->number, exponent != nullptr ? exponent->number : 1)));
   }

@@ -206,8 +206,8 @@ void refuseNoNumbers(const std::string& file) {
     for (std::istringstream words(line); words >> word;)
       if (isNoNumber(word))
         throw CadError("line " + std::to_string(number) + ": '" + word +
-                       "' stands where a number belongs; expected finite coordinates: write the file again from its "
-                       "source");
+                       "' stands where a number belongs; "
+                       "expected finite coordinates: write the file again from its source");
 }
 
 /// Returns the shapes of a BREP file that belong to no other shape and have faces.
@@ -265,8 +265,8 @@ void readBrep(const std::string& file, CadFile& cad) {
     shape = shapeOfBrep(in, cad.remarks);
   } catch (const std::ios::failure&) {
     throw CadError(
-        "it is not a BREP file of Open CASCADE, or it is damaged: it ends too early, or has words where numbers "
-        "belong");
+        "it is not a BREP file of Open CASCADE, or it is damaged: "
+        "it ends too early, or has words where numbers belong");
   }
   if (shape.IsNull()) throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
   assumeUnit(cad);

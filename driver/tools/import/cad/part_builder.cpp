@@ -41,9 +41,8 @@ class PartBuilder {
       scope.Next();
     }
     if (part_.faces.empty())
-      throw CadError(part_.losses.empty() ? "there are no faces in it; expected solids, shells or faces: curves, "
-                                            "points and finite elements are not "
-                                            "taken"
+      throw CadError(part_.losses.empty() ? "there are no faces in it; expected solids, shells or faces: "
+                                            "curves, points and finite elements are not taken"
                                           : "none of its faces can be kept; the first: " + part_.losses.front().what +
                                                 ": " + part_.losses.front().reason);
     brep::linkCoedges(part_);

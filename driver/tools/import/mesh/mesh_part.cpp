@@ -25,11 +25,10 @@ void refuseFarPoints(const MeshFile& mesh, double scale) {
     for (const std::uint32_t i : c) farthest = std::max(farthest, scale * mesh.points[i].lpNorm<Eigen::Infinity>());
   if (farthest <= kFarthest) return;
   char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "a coordinate is %.10g m, expected at most 1000000 m\n  fix: if the file counts millimetres, add --scale "
-      "0.001",
-      farthest);
+  std::snprintf(text, sizeof text,
+                "a coordinate is %.10g m, expected at most 1000000 m\n"
+                "  fix: if the file counts millimetres, add --scale 0.001",
+                farthest);
   throw std::invalid_argument(text);
 }
 

@@ -152,8 +152,8 @@ class ObjReader {
   void tellWhatIsDropped() {
     if (mesh_.objects.size() > 1 || groups_ < 2) return;
     mesh_.remarks.push_back("the file has " + std::to_string(groups_) +
-                            " groups (g), which are not kept: its triangles are one body; name objects (o) to get one "
-                            "body for each");
+                            " groups (g), which are not kept: its triangles are one body; "
+                            "name objects (o) to get one body for each");
   }
 
   std::string whatIsMissing() const {

@@ -92,8 +92,8 @@ class Reader {
   bool failAt(const Body& body, const std::string& expected) {
     if (body.ended())
       return fail(
-          "the file ends here, but the header states more; the file is cut off, or the number in the header is "
-          "wrong");
+          "the file ends here, but the header states more; "
+          "the file is cut off, or the number in the header is wrong");
     if (body.lastWord().empty()) return fail("the line ends before " + expected);
     return fail("'" + plainWord(body.lastWord()) + "' is not a number; expected " + expected);
   }

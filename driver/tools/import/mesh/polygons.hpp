@@ -17,8 +17,7 @@ bool cutPolygon(const std::vector<Eigen::Vector3d>& points, std::vector<std::uin
                 std::vector<std::array<std::uint32_t, 3>>& corners);
 
 inline constexpr const char* kPolygonTooLarge =
-    "the polygon is concave and has so many corners that cutting it takes too long; expected triangles: export the "
-    "mesh "
-    "again, triangulated";
+    "the polygon is concave and has so many corners that cutting it takes too long; "
+    "expected triangles: export the mesh again, triangulated";
 
 }  // namespace hapticd::importing

@@ -58,8 +58,8 @@ class TextStl {
     if (!wrong_lines_.none()) return wrong_lines_.error(name_);
     if (mesh_.corners.empty())
       return Error{name_ +
-                   ": the file has no triangles; expected a text STL (solid, facet, vertex x y z) or a whole binary "
-                   "one"};
+                   ": the file has no triangles; "
+                   "expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
     if (polygons_ > 0)
       mesh_.remarks.push_back(counted(polygons_, "facet has", "facets have") +
                               " more than three corners and became triangles");

@@ -117,6 +117,32 @@ TEST(NurbsRigid, DampingAsksForVelocityAndFrictionAloneDoesNot) {
   }
 }
 
+TEST(NurbsRigid, DampingHoldsBackAProbeThatClosesInAndLetsOneGoThatLeaves) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "sphere.yaml");
+  plugin.set("stiffness", 1000);
+  plugin.set("depth_scale", 1e-3);
+  plugin.set("damping", 5);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  EXPECT_NEAR(plugin.at(0.048, 0, 0).force[0], 2, 1e-6);
+  EXPECT_NEAR(plugin.at(0.048, 0, 0, -0.1).force[0], 2 + 2 * 5 * 0.1, 1e-6) << "closing in, at twice the scale";
+  EXPECT_NEAR(plugin.at(0.048, 0, 0, 0.1).force[0], 2 - 2 * 5 * 0.1, 1e-6) << "leaving";
+  EXPECT_EQ(plugin.at(0.048, 0, 0, 10).force[0], 0) << "it never pulls";
+}
+
+TEST(NurbsRigid, FrictionDoesNotPullAProbeBackToWhereItWasBeforeAJump) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "box.yaml");
+  plugin.set("friction_static", 0.5);
+  plugin.set("friction_dynamic", 0.5);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  for (int i = 0; i < 10; ++i) plugin.at(0, 0.049, 0);
+  EXPECT_LT(plugin.at(1e-4, 0.049, 0).force[0], -0.05) << "it sticks";
+  const hsp_contact after = plugin.at(0.02, 0.049, 0, 0, HSP_IN_JUMP);
+  EXPECT_NEAR(after.force[1], 0.8, 1e-6);
+  EXPECT_NEAR(after.force[0], 0, 1e-9);
+}
+
 TEST(NurbsRigid, FrictionHoldsBackAProbeThatSlides) {
   Plugin plugin;
   plugin.set("geometry", kModels + "box.yaml");

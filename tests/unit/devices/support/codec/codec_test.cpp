@@ -153,6 +153,32 @@ TEST(Codec, TorquesAreZeroWhileMotorsAreOff) {
   EXPECT_EQ(encoded(oneField(Type::kSigned, 16, Role::kTorque), order), (std::vector<uint8_t>{0, 0}));
 }
 
+TEST(Codec, AReportWithTwoDifferentSequenceNumbersIsTorn) {
+  Report report = oneField(Type::kUnsigned, 8, Role::kSequence);
+  report.fields.push_back(report.fields[0]);
+  report.fields[1].at = 1;
+  report.size = 2;
+  State state;
+  EXPECT_EQ(decode(report, std::vector<uint8_t>{7, 7}, state), Verdict::kGood);
+  EXPECT_EQ(state.sequence, 7u);
+  EXPECT_EQ(decode(report, std::vector<uint8_t>{7, 6}, state), Verdict::kTorn);
+}
+
+TEST(Codec, APositionThatWrapsContinuesAtTheOtherEndOfItsType) {
+  Report report = oneField(Type::kSigned, 16, Role::kPosition);
+  report.fields[0].wraps = true;
+  constexpr double kTurn = 65536;
+  for (const double inside : {-32768.0, -5.0, 0.0, 32767.0})
+    for (const double turns : {-3.0, -1.0, 0.0, 1.0, 2.0}) {
+      State arm, read;
+      arm.position[0] = inside + turns * kTurn;
+      std::vector<uint8_t> bytes(2);
+      ASSERT_EQ(encode(report, arm, bytes), 2u);
+      ASSERT_EQ(decode(report, bytes, read), Verdict::kGood);
+      EXPECT_EQ(read.position[0], inside) << turns;
+    }
+}
+
 TEST(Codec, ReportsOfAnotherSizeOrIdAreRefused) {
   Report report = oneField(Type::kSigned, 16, Role::kPosition);
   State state;

@@ -66,6 +66,22 @@ TEST_P(EveryArm, FindsJointsThatReachWhereItsTipWas) {
   }
 }
 
+TEST_P(EveryArm, NeverReachesAPointWithAJointBeyondItsLimits) {
+  int refused = 0;
+  for (int n = 0; n < kPoses; ++n) {
+    JointVector q = random_.next(), found = arm_->neutral();
+    const Eigen::Index joint = n % q.size();
+    const double beyond = 0.05 * (1 + n % 4);
+    q[joint] = n % 2 == 0 ? arm_->limits().max[joint] + beyond : arm_->limits().min[joint] - beyond;
+    Pose tip;
+    if (!arm_->forward(q, tip)) continue;
+    const bool reached = arm_->inverse(tip.position, found);
+    EXPECT_TRUE(!reached || arm_->allowed(found)) << q.transpose();
+    refused += reached ? 0 : 1;
+  }
+  EXPECT_GT(refused, 0);
+}
+
 TEST_P(EveryArm, SaysWhenAPointIsOutOfReachAndKeepsTheJoints) {
   JointVector q = arm_->neutral();
   EXPECT_FALSE(arm_->inverse(Eigen::Vector3d(5, 5, 5), q));
