@@ -49,8 +49,7 @@ HDerror errorOf(uint32_t fault) {
 
 constexpr const char* kFrameIsUsed =
     "a frame was refused: HD_ONE_FRAME_LIMIT allows one frame of a device in a tick, and another callback, "
-    "or an earlier frame of this one, has used it (0x0400; the hdEndFrame that follows gets 0x0401)
-    "
+    "or an earlier frame of this one, has used it (0x0400; the hdEndFrame that follows gets 0x0401)\n"
     "  fix: let the first callback of a tick call hdBeginFrame, the last one hdEndFrame, "
     "and all others only get and set in between; or call hdDisable(HD_ONE_FRAME_LIMIT)";
 
