@@ -19,6 +19,7 @@
 #include "diagnostics/device/slow_arm.hpp"
 #include "diagnostics/scene/explain_cost.hpp"
 #include "document/reader.hpp"
+#include "servo/arm/velocity_use.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "session/messages/setup_watch.hpp"
 #include "world/world.hpp"
@@ -122,6 +123,22 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
   }
 }
 
+/// Says which estimator runs, and names everything that uses its velocity.
+std::string estimatorText(const scene::Scene& scene, const servo::World& world) {
+  std::set<std::string> users;
+  if (world.needsVelocity()) users.insert("a model uses velocity");
+  for (const scene::Device& device : scene.devices)
+    if (const auto key = servo::keyThatUsesVelocity(device, scene.clients); key == "clients")
+      users.insert("programs may push (clients)");
+    else if (!key.empty())
+      users.insert(std::string(key) + " of " + device.name);
+  std::string text;
+  for (const std::string& user : users) text += (text.empty() ? "" : ", ") + user;
+  if (text.empty()) return "none: nothing in the scene uses velocity";
+  const scene::Velocity& velocity = scene.servo.velocity;
+  return velocity.estimator + " (" + document::numberText(velocity.parameter) + "): " + text;
+}
+
 void explainServo(const scene::Scene& scene, const servo::World& world) {
   std::printf("servo\n");
   printLine("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
@@ -132,10 +149,7 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
       "%.4g us for all models; beyond it the least important models are traced less accurately, never left out",
       scene.servo.budget_us > 0 ? scene.servo.budget_us : kShare * 1e6 / scene.servo.rate);
   printLine("budget of a tick", deadline);
-  printLine("velocity estimator", world.needsVelocity() ? scene.servo.velocity.estimator + " (" +
-                                                              document::numberText(scene.servo.velocity.parameter) +
-                                                              "): a model uses velocity"
-                                                        : "none: nothing in the scene uses velocity");
+  printLine("velocity estimator", estimatorText(scene, world));
 }
 
 void explainSimulation(servo::World& world) {

@@ -57,6 +57,7 @@ record::LimitReport limitsOf(const servo::Runner& runner, size_t arm) {
                              .sent_max_n = sent.largest,
                              .faults = limiter.faults(),
                              .fault_ticks = sent.fault_ticks,
+                             .not_enabled_ticks = sent.not_enabled,
                              .swing_hz = runner.telemetry().swing(arm).fastest(),
                              .complies = runner.scene().devices[arm].admittance.has_value(),
                              .any = limiter.clips().any,

@@ -153,8 +153,9 @@ std::string untouchedText(const RunReport& report) {
   const bool silenced = std::any_of(report.faults.begin(), report.faults.end(),
                                     [](const std::string& fault) { return fault.rfind("model ", 0) == 0; });
   if (touched || silenced || report.ticks == 0) return "";
-  const bool faulted = std::any_of(report.limits.begin(), report.limits.end(),
-                                   [](const LimitReport& device) { return device.fault_ticks > 0; });
+  const bool faulted = std::any_of(report.limits.begin(), report.limits.end(), [](const LimitReport& device) {
+    return device.fault_ticks + device.not_enabled_ticks > 0;
+  });
   return faulted ? "  contact   none while forces were allowed\n" : "  contact   none: the tip touched no model\n";
 }
 
@@ -182,6 +183,14 @@ std::string faultTimeText(const LimitReport& device, const RunReport& report) {
       "faults of {}: {} in this run, {:.2f} s without force, "
       "which are left out of contact, depth and force above\n",
       device.device, device.faults, seconds);
+}
+
+/// Reports that the enable switch was off, because statistics of contacts leave out its ticks as well.
+std::string enableText(const LimitReport& device, const RunReport& report) {
+  if (device.not_enabled_ticks == 0 || report.rate_hz <= 0) return "";
+  return fmt::format(
+      "enable switch of {}: off for {:.2f} s, without force, which are left out of contact, depth and force above\n",
+      device.device, static_cast<double>(device.not_enabled_ticks) / report.rate_hz);
 }
 
 /// Reports a tip that swung as no hand moves it. Ridges over which a hand strokes fast may look the same.
@@ -261,11 +270,9 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
   json["limits"] = Json::object();
   for (const LimitReport& device : report.limits) {
     Json& ticks = json["limits"][device.device];
-    ticks = {{"clipped_ticks", device.any},
-             {"sent_max_n", device.sent_max_n},
-             {"swing_hz", device.swing_hz},
-             {"faults", device.faults},
-             {"fault_ticks", device.fault_ticks}};
+    ticks = {{"clipped_ticks", device.any},       {"sent_max_n", device.sent_max_n},
+             {"swing_hz", device.swing_hz},       {"faults", device.faults},
+             {"fault_ticks", device.fault_ticks}, {"not_enabled_ticks", device.not_enabled_ticks}};
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
   }
   json["stops"] = Json::object();
@@ -301,7 +308,7 @@ std::string summary(const RunReport& report) {
     if ((felt(model.contact) || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
-  for (const LimitReport& device : report.limits) text += faultTimeText(device, report);
+  for (const LimitReport& device : report.limits) text += faultTimeText(device, report) + enableText(device, report);
   for (const LimitReport& device : report.limits) text += swingText(device, report);
   for (const StopReport& stop : report.stops) text += stopText(stop, report);
   for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);

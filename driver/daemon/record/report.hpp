@@ -39,6 +39,7 @@ struct LimitReport {
   double sent_max_n = 0;                                ///< [N] largest force that was sent to the device
   uint32_t faults = 0;                                  ///< faults of the run, those that are over included
   uint64_t fault_ticks = 0;                             ///< ticks in which a fault kept the force away
+  uint64_t not_enabled_ticks = 0;                       ///< ticks in which the enable switch alone kept it away
   double swing_hz = 0;                                  ///< [Hz] swing that no hand makes; 0: there was none
   bool complies = false;                                ///< it is under compliance control
   uint64_t any = 0;                                     ///< ticks in which at least one limit reduced the force

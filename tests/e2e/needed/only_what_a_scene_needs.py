@@ -49,6 +49,19 @@ threads, modules = look("soft-leaf")
 assert modules == {"mat_deformable.so", "simulated.so"}, modules
 assert "hapticd-sim" not in threads, f"no surfaces, no search: {threads}"
 
+# What is set up for an arm or for programs is explained as well as what a model asks for.
+with tempfile.TemporaryDirectory() as folder:
+    arm, ball = f"{folder}/arm.yaml", f"{folder}/ball.yaml"
+    for limits, clients, users in (("{force: 2}", "off", ()), ("{force: 2}", "add", ("clients",)), ("{power: 1}", "off", ("limits.power",)),
+                                   ("{velocity: 1}", "off", ("limits.velocity",))):
+        pathlib.Path(arm).write_text(f"hapticd-device: 1\nmodule: simulated\nname: arm\nmount: {{position: [0, 0, 0.09]}}\nlimits: {limits}\n")
+        pathlib.Path(ball).write_text(f"hapticd: 1\ndevice: arm.yaml\nclients: {clients}\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, "
+                                      f"parameters: {{geometry: {source}/config/models/sphere.yaml}}}}\n")
+        for option in ((), ("--cost",)):
+            told = subprocess.run([hapticd, "explain", ball, *option], check=True, capture_output=True, text=True).stdout
+            (line,) = [line for line in told.splitlines() if line.startswith("  velocity estimator")]
+            assert all(user in line for user in users) and ("window" in line) == bool(users), f"{limits}, clients {clients}: {line}"
+
 # Plugins are files: a build without the others is this one without their files.
 with tempfile.TemporaryDirectory() as folder:
     build = pathlib.Path(hapticd).resolve().parent.parent

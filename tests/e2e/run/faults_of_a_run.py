@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What a run says of forces that the hand did not get: cut by a limit, or kept away by a fault that comes again. And of an arm
-that swings.
+"""What a run says of forces that the hand did not get: cut by a limit, kept away by a fault that comes again, or not enabled.
+And of an arm that swings.
 
 Usage: faults_of_a_run.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
@@ -22,7 +22,7 @@ module: simulated
 name: arm
 mount: {{position: [0, 0, 0.09]}}
 limits: {{force: 2, {0}}}
-hand: {{script: press, radius: 0.05, rise: 0.01, rate: 2, center: [0, 0, -0.09]}}
+hand: {{pressed: [[1, 2]], script: press, radius: 0.05, rise: 0.01, rate: 2, center: [0, 0, -0.09]}}
 """
 
 
@@ -54,6 +54,17 @@ def kept_away_by_a_fault(folder, ask):
     check("ticks without force are no contact", model["contact_ticks"] + sent["fault_ticks"] <= report["ticks"], (model, sent))
     check("the force is that of other ticks", model["force_n"]["max"] < 6, model["force_n"])
     check("the summary tells of the fault and its time", "faults of arm: 1 in this run" in out and "left out" in out, out)
+
+
+def not_enabled(folder, ask):
+    """The button of the hand is down from 1 s to 2 s of 3."""
+    out, report, model, sent = virtual(folder, ask, "enable: {button: 0}")
+    off = sent["not_enabled_ticks"]  # the last 20 ms belong to the end of the run
+    check("without the button there is no force", 1950 < off <= 2000 and sent["faults"] == 0, sent)
+    check("nor a contact", 100 < model["contact_ticks"] <= report["ticks"] - off, (model, sent))
+    check("the summary tells for how long", f"enable switch of arm: off for {off / 1000:.2f} s" in out and "left out" in out, out)
+    out, _, model, sent = virtual(folder, ask, "ramp_in: 0.2")
+    check("an arm without a switch is always enabled", sent["not_enabled_ticks"] == 0 and "enable switch" not in out, (sent, out))
 
 
 def swings(folder, ask):
@@ -112,6 +123,7 @@ with tempfile.TemporaryDirectory() as place:
     settings = dict(os.environ, RUNTIME_DIRECTORY=place, STATE_DIRECTORY=os.path.join(place, "state"))
     cut_by_a_limit(place, program(HAPTICD, settings))
     kept_away_by_a_fault(place, program(HAPTICD, settings))
+    not_enabled(place, program(HAPTICD, settings))
     swings(place, program(HAPTICD, settings))
     told_by_a_recording(place, program(HAPTICD, settings))
     cleared_in_vain(place, settings, program(HAPTICD, settings))

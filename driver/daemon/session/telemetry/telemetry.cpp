@@ -107,16 +107,24 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   if (row_count_ < rows_.size()) ++row_count_;
 }
 
-/// True at the planned end of a run, in a hold, and in a fault of every arm. No force acts then, so the depth of the
-/// hand and the force that the model asks for are not counted: nobody feels them.
+namespace {
+
+/// True in a fault, in a hold, at the planned end of a run, and while the enable switch is off.
+bool forceless(const Arm& arm) noexcept HSP_RT {
+  return arm.limiter().fault() != Fault::kNone || !arm.limiter().enabled();
+}
+
+}  // namespace
+
+/// True while no arm may push. The depth of the hand and the force that the model asks for are not counted then: nobody
+/// feels them.
 bool Telemetry::withoutForce(const Arms& arms) noexcept HSP_RT {
-  const auto is = [](const auto& arm) { return arm->limiter().fault() != Fault::kNone; };
-  return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
+  return !arms.empty() && std::all_of(arms.begin(), arms.end(), [](const auto& arm) { return forceless(*arm); });
 }
 
 void Telemetry::recordArms(uint32_t index, double dt, const Core& core, const Arms& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
-    if (arm < arms.size() && arms[arm]->limiter().fault() != Fault::kNone) continue;
+    if (arm < arms.size() && forceless(*arms[arm])) continue;
     const Contact& contact = core.contact(index, arm);
     const double force = Eigen::Map<const Vector3d>(contact.world.force).norm();
     const bool felt = core.models()[index].guard.gain() > 0, inside = contact.traced && contact.world.depth_m > 0;

@@ -14,6 +14,7 @@
 #include "diagnostics/reading/key_place.hpp"
 #include "hapticd/abi.h"
 #include "host/library.hpp"
+#include "servo/arm/velocity_use.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
 #include "tune/motion.hpp"
@@ -250,8 +251,13 @@ class Costs {
   }
 
   void addEstimator(const servo::World& world) {
-    const bool pushed = scene_.clients.mode != scene::ClientMode::kOff;
-    if (!world.needsVelocity() && !pushed)
+    std::set<std::string> keys;  // where something beside the models asks for it
+    for (const scene::Device& device : scene_.devices)
+      if (const std::string key(servo::keyThatUsesVelocity(device, scene_.clients)); key == "clients")
+        keys.insert(where(scene_, key));
+      else if (!key.empty())
+        keys.insert(where(placeOfKey(device.file, key).value_or(device.place), key));
+    if (!world.needsVelocity() && keys.empty())
       return add("velocity estimator", "", "no model and no limit needs a velocity", 0, 0);
     auto estimator = servo::makeEstimator(scene_.servo.velocity, scene_.servo.rate);
     if (!estimator) return;
@@ -262,7 +268,7 @@ class Costs {
     for (const CostRow& row : rows_)
       if (row.there() && row.part.find(": velocity") != std::string::npos)
         asked_by += (asked_by.empty() ? "" : ", ") + row.asked_by;
-    if (pushed) asked_by += std::string(asked_by.empty() ? "" : ", ") + where(scene_, "clients");
+    for (const std::string& key : keys) asked_by += (asked_by.empty() ? "" : ", ") + key;
     add("velocity estimator", asked_by, scene_.servo.velocity.estimator, each, sizeof *estimator);
   }
 
