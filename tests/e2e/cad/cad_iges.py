@@ -37,12 +37,12 @@ def lines_of(entity):
 
 
 def iges(name, entities, unit=2, unit_name="2HMM", scale=1.0):
-    """Writes a file of (entity, status) and returns its path."""
+    """Writes a file of (entity, status) and returns its path. A third number is the directory line of its transformation."""
     header = f"1H,,1H;,1Hp,5Hp.igs,1Hx,1Hx,32,38,6,308,15,1Hp,{scale},{unit},{unit_name},1,0.01,15H20260101.000000,1E-6,1000.,1Ha,1Hb,11,0;"
     sections = {"S": ["sheets"], "G": [header[i:i + 72] for i in range(0, len(header), 72)], "D": [], "P": []}
-    for number, (entity, status) in enumerate(entities):
+    for number, (entity, status, *move) in enumerate(entities):
         at, lines = 2 * number + 1, lines_of(entity)
-        sections["D"] += [f"{entity[0]:8d}{len(sections['P']) + 1:8d}" + f"{0:8d}" * 6 + f"00{status:02d}0000",
+        sections["D"] += [f"{entity[0]:8d}{len(sections['P']) + 1:8d}" + f"{0:8d}" * 4 + f"{sum(move):8d}{0:8d}00{status:02d}0000",
                           f"{entity[0]:8d}{0:8d}{0:8d}{len(lines):8d}{0:8d}" + " " * 24 + f"{0:8d}"]
         sections["P"] += [f"{line:64s}{at:8d}" for line in lines]
     path = os.path.join(folder, name)
@@ -73,6 +73,10 @@ check("an array of copies is lost", code == 0 and "lost: array of subfigures D7:
 cube = (150, 10.0, 10.0, 10.0)
 code, out, err = told("cube.igs", [(SHEET, 0), (cube, 0)])
 check("a solid of primitives is lost", code == 0 and "lost: solid D3: it is made of primitives" in out, out + err)
+
+right = (124, 1.0, 0.0, 0.0, 100.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+code, out, err = told("moved.igs", [(right, 0), (SHEET, 0, 1)])
+check("an open sheet is told where the file moves it", code == 0 and "around (100, 0, 2.5) mm" in out, out + err)
 
 code, out, err = told("inch.igs", [(SHEET, 0)], unit=3, unit_name="4HINCH")
 check("a unit by its name", code == 0 and "1.016 x 1.016 x 0.127 m, unit in\n" in out, out + err)

@@ -133,6 +133,9 @@ def open_bodies():
         out, _, info = told(name)
         for text in (out, info):
             check(f"{name}: where it is open", "open, so it is felt from both sides" in text and where in text, text)
+    for placing in ((), ("--center", "--scale", "2")):
+        out, _, _ = told("moved_trough.brep", *placing)
+        check(f"one that the file moves is told where the CAD program has it {placing}", "around (100, 5, 10) mm, 30 mm wide" in out, out)
     out, _, info = told("loose.brep")
     check("part info has the steps of the import", "loose faces sewn over gaps" in out and "loose faces sewn over gaps" in info, info)
     check("a closed body is not open", "felt from both sides" not in out, out)

@@ -282,6 +282,9 @@ int main(int argc, char** argv) {
   step(plateWithHoles(), "plate");
   step(plateWithSplineHole(), "spline_hole");
   brep(trough(), "trough");
+  gp_Trsf aside;
+  aside.SetTranslation({100, 0, 0});
+  brep(trough().Moved(TopLoc_Location(aside)), "moved_trough");
   brep(roof(1, 1), "roof");
   brep(roof(0.7, 20), "roof_of_degree_20");
   brep(shellOff(), "shell_off");

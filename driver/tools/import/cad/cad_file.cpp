@@ -130,6 +130,8 @@ void readStep(const std::string& file, CadFile& cad) {
   findMissingFiles(reader, cad.losses);
   if (made) readTree(document, cad);
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
+  findMadeSolids(reader.ChangeReader().WS(), cad.losses);
+  findChangedCopies(reader.ChangeReader().WS(), cad.losses);
   findTriangles(file, cad);
   if (!made) throw CadError(noShapes(cad.losses));
 }

@@ -9,6 +9,7 @@
 #include <STEPCAFControl_ExternFile.hxx>
 #include <StepBasic_NamedUnit.hxx>
 #include <StepGeom_CartesianPoint.hxx>
+#include <StepGeom_CartesianTransformationOperator3d.hxx>
 #include <StepGeom_Curve.hxx>
 #include <StepGeom_Direction.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
@@ -18,8 +19,16 @@
 #include <StepGeom_Surface.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_Block.hxx>
+#include <StepShape_CsgSolid.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_RightCircularCone.hxx>
+#include <StepShape_RightCircularCylinder.hxx>
+#include <StepShape_Sphere.hxx>
+#include <StepShape_SweptAreaSolid.hxx>
+#include <StepShape_SweptFaceSolid.hxx>
 #include <StepShape_TopologicalRepresentationItem.hxx>
+#include <StepShape_Torus.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_Binder.hxx>
@@ -27,6 +36,7 @@
 #include <XSControl_TransferReader.hxx>
 #include <cmath>
 #include <gp_Pnt.hxx>
+#include <gp_Vec.hxx>
 #include <unordered_set>
 
 #include "kernels/part/names.hpp"
@@ -66,9 +76,9 @@ std::string reasonOf(const Handle(Transfer_Binder) & binder) {
   return "the reader could not convert it";
 }
 
-std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity& entity) {
+std::string nameOf(const std::string& word, const Handle(Interface_InterfaceModel) & model, const Entity& entity) {
   const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
-  std::string text = "face " + std::string(label.IsNull() ? "" : label->ToCString());
+  std::string text = word + " " + std::string(label.IsNull() ? "" : label->ToCString());
   const auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
   if (!item.IsNull() && !item->Name().IsNull() && item->Name()->Length() > 0)
     text += " '" + std::string(item->Name()->ToCString()) + "'";
@@ -84,6 +94,27 @@ bool isForm(const Entity& entity) {
          entity->IsKind(STANDARD_TYPE(StepShape_TopologicalRepresentationItem));
 }
 
+/// Returns true for solids that are no boundary, and for the primitives of which they are made. None is read.
+bool isMade(const Entity& entity) {
+  return entity->IsKind(STANDARD_TYPE(StepShape_CsgSolid)) || entity->IsKind(STANDARD_TYPE(StepShape_SweptAreaSolid)) ||
+         entity->IsKind(STANDARD_TYPE(StepShape_SweptFaceSolid)) || entity->IsKind(STANDARD_TYPE(StepShape_Block)) ||
+         entity->IsKind(STANDARD_TYPE(StepShape_RightCircularCylinder)) ||
+         entity->IsKind(STANDARD_TYPE(StepShape_RightCircularCone)) ||
+         entity->IsKind(STANDARD_TYPE(StepShape_Sphere)) || entity->IsKind(STANDARD_TYPE(StepShape_Torus));
+}
+
+gp_Vec directionOr(const Handle(StepGeom_Direction) & axis, const gp_Vec& otherwise) {
+  if (axis.IsNull() || axis->NbDirectionRatios() != 3) return otherwise;
+  return {axis->DirectionRatiosValue(1), axis->DirectionRatiosValue(2), axis->DirectionRatiosValue(3)};
+}
+
+/// Returns true if the three axes of a copy are left-handed (base_axis of ISO 10303-42).
+bool isMirror(const StepGeom_CartesianTransformationOperator3d& copy) {
+  const gp_Vec x = directionOr(copy.Axis1(), {1, 0, 0}), y = directionOr(copy.Axis2(), {0, 1, 0}),
+               z = directionOr(copy.Axis3(), {0, 0, 1});
+  return x.Crossed(y).Dot(z) < 0;
+}
+
 bool assignsUnits(const Entity& entity) {
   return entity->IsKind(STANDARD_TYPE(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)) ||
          entity->IsKind(STANDARD_TYPE(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)) ||
@@ -91,6 +122,32 @@ bool assignsUnits(const Entity& entity) {
 }
 
 }  // namespace
+
+void findMadeSolids(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  if (model.IsNull()) return;
+  for (Standard_Integer i = 1; i <= model->NbEntities(); ++i)
+    if (isMade(model->Value(i)))
+      losses.push_back({nameOf("solid", model, model->Value(i)),
+                        "it is made of primitives, sweeps or Boolean operations; export its boundary (a B-rep)", 0,
+                        brep::kNone});
+}
+
+void findChangedCopies(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  if (model.IsNull()) return;
+  for (Standard_Integer i = 1; i <= model->NbEntities(); ++i) {
+    const auto copy = Handle(StepGeom_CartesianTransformationOperator3d)::DownCast(model->Value(i));
+    if (copy.IsNull()) continue;
+    const double scale = copy->HasScale() ? copy->Scale() : 1;
+    const bool scaled = std::abs(scale - 1) > 1e-9;
+    if (!scaled && !isMirror(*copy)) continue;
+    losses.push_back({nameOf("copy", model, copy),
+                      !scaled ? "it was to be mirrored, and was only turned: the part has another shape there"
+                              : "it was to be scaled, and was only moved: the part has another size there",
+                      0, brep::kNone});
+  }
+}
 
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses) {
   constexpr std::size_t kMost = 100;
@@ -159,8 +216,8 @@ void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, 
   if (lost.empty()) return;
   const Interface_Graph graph(model);
   for (const Entity& entity : lost)
-    losses.push_back(
-        {nameOf(model, entity), reasonOf(made->Find(entity)), 1e-3 * extentOf(graph, entity, to_mm), brep::kNone});
+    losses.push_back({nameOf("face", model, entity), reasonOf(made->Find(entity)),
+                      1e-3 * extentOf(graph, entity, to_mm), brep::kNone});
 }
 
 }  // namespace hapticd::cad

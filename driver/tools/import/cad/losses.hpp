@@ -16,6 +16,13 @@ inline constexpr const char* kNoUnit =
 /// @param to_mm millimetres per unit of the coordinates in the file
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses);
 
+/// [main] Appends a loss for each solid of a STEP file that is no boundary: extruded, turned, or made of primitives.
+void findMadeSolids(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);
+
+/// [main] Appends a loss for each copy (mapped item) of a STEP file that is mirrored or scaled. Open CASCADE turns and
+/// moves it only.
+void findChangedCopies(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);
+
 /// [main] Appends a loss for each entity that other entities of a STEP file refer to, but that the file does not
 /// contain.
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);

@@ -103,12 +103,12 @@ int import(const Options& options) {
   part.source.file = std::filesystem::path(options.file).filename().string();
   brep::checkPart(part);
   report.measures = measured(part);
+  const std::vector<std::string> open = openBodies(part);  // where the CAD program has it, before it is placed
   if (options.placement.moves()) {
     placePart(part, options.placement, report.measures.box);
     brep::checkPart(part);
     report.measures = measured(part);
   }
-  const std::vector<std::string> open = openBodies(part);
   part.warnings.insert(part.warnings.end(), open.begin(), open.end());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return finish(options, part, report);

@@ -48,36 +48,51 @@ class Chains {
   std::vector<std::pair<std::uint32_t, OpenBorder>> edges_;
 };
 
-void addTriangles(const Part& part, std::uint32_t index, Chains& chains) {
+/// Returns the pose of each body's only instance; no move if it has several, since then no place is that of all.
+std::vector<Eigen::Affine3d> onlyPoses(const Part& part) {
+  std::vector<Eigen::Affine3d> poses(part.bodies.size(), Eigen::Affine3d::Identity());
+  std::vector<int> counts(part.bodies.size(), 0);
+  for (const Instance& instance : part.instances) {
+    if (instance.body == kNone) continue;
+    if (++counts[instance.body] == 1)
+      poses[instance.body].affine() =
+          Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(instance.pose.data());
+    else
+      poses[instance.body].setIdentity();
+  }
+  return poses;
+}
+
+void addTriangles(const Part& part, std::uint32_t index, const Eigen::Affine3d& pose, Chains& chains) {
   const Body& body = part.bodies[index];
   for (std::uint32_t t = body.first_triangle; t < body.first_triangle + body.triangle_count; ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const Triangle& triangle = part.triangles[t];
       if (triangle.across[k] != kNone) continue;
       const std::uint32_t from = triangle.corner[k], to = triangle.corner[(k + 1) % 3];
-      Eigen::AlignedBox3d box(vec(part.points[from]));
-      chains.add(from, to, index, box.extend(vec(part.points[to])));
+      Eigen::AlignedBox3d box(pose * vec(part.points[from]));
+      chains.add(from, to, index, box.extend(pose * vec(part.points[to])));
     }
 }
 
-Eigen::AlignedBox3d boxOf(const Geometry& geometry, const Edge& edge) {
+Eigen::AlignedBox3d boxOf(const Geometry& geometry, const Edge& edge, const Eigen::Affine3d& pose) {
   constexpr int kPieces = 8;
   Eigen::AlignedBox3d box;
   spline::CurvePoint at;
   for (int i = 0; i <= kPieces; ++i) {
     geometry.curve(edge.curve, edge.t0 + (edge.t1 - edge.t0) * i / kPieces, at);
-    box.extend(at.C);
+    box.extend(pose * at.C);
   }
   return box;
 }
 
 void addEdges(const Part& part, const Geometry& geometry, const std::vector<int>& uses, std::uint32_t index,
-              Chains& chains) {
+              const Eigen::Affine3d& pose, Chains& chains) {
   const Body& body = part.bodies[index];
   for (std::uint32_t e = body.first_edge; e < body.first_edge + body.edge_count; ++e) {
     const Edge& edge = part.edges[e];
     if (uses[e] == 1 && edge.curve != kNone)
-      chains.add(edge.first_vertex, edge.last_vertex, index, boxOf(geometry, edge));
+      chains.add(edge.first_vertex, edge.last_vertex, index, boxOf(geometry, edge, pose));
   }
 }
 
@@ -102,9 +117,10 @@ std::vector<OpenBorder> openBorders(const Part& part) {
   Chains of_points(part.points.size()), of_vertices(part.vertices.size());
   std::optional<Geometry> geometry;
   if (std::find(uses.begin(), uses.end(), 1) != uses.end()) geometry.emplace(part, spline::Form::kNet);
+  const std::vector<Eigen::Affine3d> poses = onlyPoses(part);
   for (std::uint32_t b = 0; b < part.bodies.size(); ++b) {
-    addTriangles(part, b, of_points);
-    if (geometry) addEdges(part, *geometry, uses, b, of_vertices);
+    addTriangles(part, b, poses[b], of_points);
+    if (geometry) addEdges(part, *geometry, uses, b, poses[b], of_vertices);
   }
   std::vector<OpenBorder> all = of_points.borders(), more = of_vertices.borders();
   all.insert(all.end(), more.begin(), more.end());

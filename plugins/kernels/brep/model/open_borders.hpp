@@ -13,14 +13,15 @@ namespace hapticd::brep {
 struct OpenBorder {
   std::size_t edges = 0;
   std::uint32_t body = 0;
-  Eigen::AlignedBox3d box;  ///< [m] around the edges, in the frame of the body
+  Eigen::AlignedBox3d
+      box;  ///< [m] around the edges, where the only instance of the body is; in the body's frame if it has more
 };
 
 /// [main] Returns the borders of all bodies, the largest of each body first.
 std::vector<OpenBorder> openBorders(const Part& part);
 
 /// [main] Says where the largest of some borders are, such as "around (10, 0, 2) mm, 5 mm wide; around ...". The
-/// coordinates are those of the body.
+/// coordinates are those of the boxes.
 std::string placesOf(const std::vector<OpenBorder>& borders);
 
 }  // namespace hapticd::brep
