@@ -169,6 +169,24 @@ TEST(MatDeformable, FrictionHoldsAProbeBackAlongTheSurface) {
   EXPECT_GT(contact.force[0], -.5 * contact.force[2]);
 }
 
+TEST(MatDeformable, FrictionForgetsWhereAFingerStuckBeforeItLifted) {
+  for (const int dynamics : {0, 3}) {  // off, felt
+    Plugin plate;
+    plate.set("friction_static", .5);
+    plate.set("friction_dynamic", .4);
+    plate.set("dynamics", dynamics);
+    ASSERT_EQ(plate.activate(), HSP_OK);
+    plate.search({0, 0, .03});
+    hsp_contact contact{};
+    for (int i = 0; i < 200; ++i) contact = plate.touch({1e-5 * i, 0, .006});
+    EXPECT_LT(contact.force[0], -.2 * contact.force[2]) << "it sticks " << dynamics;
+    plate.touch({.01, 0, .01005});  // over the surface, which still swings
+    contact = plate.touch({.01, 0, .006});
+    ASSERT_GT(contact.force[2], 0);
+    EXPECT_LT(std::abs(contact.force[0]), .05 * contact.force[2]) << dynamics;
+  }
+}
+
 TEST(MatDeformable, WarmAndBinarySearchAgree) {
   Plugin newton("palpation.yaml"), binary("palpation.yaml");
   binary.set("search", 1.0);

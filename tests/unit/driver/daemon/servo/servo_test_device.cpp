@@ -31,14 +31,15 @@ struct Gantry : hapticd::Device {
   static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
   static constexpr auto fields() {
     using F = Fields<Gantry>;
-    return std::array{F::real("depth", &Gantry::depth, "m", -1, 1, 0.002, "Depth below y = 0."),
-                      F::real("fail_at", &Gantry::fail_at, "s", 0, 1e9, 0.05, "When it fails."),
-                      F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails."),
-                      F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again."),
-                      F::boolean("hardware", &Gantry::hardware, false, "It says that it is no simulation."),
-                      F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving."),
-                      F::integer("every", &Gantry::every, "", 1, 1000, 1, "Only so many reads have a new sample."),
-                      F::real("own_rate", &Gantry::own_rate, "Hz", 0, 1e5, 0, "Of its measurements; 0: of read().")};
+    return std::array{
+        F::real("depth", &Gantry::depth, "m", -1, 1, 0.002, "Depth below y = 0."),
+        F::real("fail_at", &Gantry::fail_at, "s", 0, 1e9, 0.05, "When it fails."),
+        F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails."),
+        F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again."),
+        F::boolean("hardware", &Gantry::hardware, false, "It says that it is no simulation."),
+        F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving, or is well again."),
+        F::integer("every", &Gantry::every, "", 1, 1000, 1, "Only so many reads have a new sample."),
+        F::real("own_rate", &Gantry::own_rate, "Hz", 0, 1e5, 0, "Of its measurements; 0: of read().")};
   }
 
   void open(hdv_info& info) {
@@ -65,6 +66,7 @@ struct Gantry : hapticd::Device {
     sample.position[1] = -depth;
     sample.flags = failure == 5 && t < well_at ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
     if (failed && failure == 1) return HSP_E_IO;
+    if (failure == 1 && t >= well_at) sample.position[0] = speed * (t - well_at);
     if (failed && failure == 2) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
     if (failed && failure == 4) sample.flags |= HDV_S_FAULT;
     if (failed && failure == 7) sample.position[0] = speed * (t - fail_at);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <limits>
 #include <string_view>
@@ -172,6 +173,30 @@ struct Sliding : hapticd::Shape {
   }
 };
 
+/// Moves along x, and pushes with 1 N along x, against its normal. Its quaternion may have another length than 1.
+struct Ramming : hapticd::Shape {
+  double speed, length;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.ramming", "ramming",  "1.0.0", "MIT",
+                                            "Pushes with its back.",    HSP_C_MOVES};
+  static constexpr auto fields() {
+    using F = Fields<Ramming>;
+    return std::array{F::real("speed", &Ramming::speed, "m/s", -100, 100, 0, "Speed along x."),
+                      F::real("length", &Ramming::length, "", 0, 2, 1, "Of its quaternion.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) { report.flags = HSP_R_MOVES; }
+  hsp_status touch(const hsp_probe& in, const hsp_step& step, hsp_contact& out) noexcept HSP_RT {
+    step.pose->position[0] += speed * step.dt_s;
+    step.pose->linear[0] = speed;
+    step.pose->orientation[0] = length;
+    out.flags = HSP_OUT_TRACED | HSP_OUT_CONTACT;
+    out.depth_m = 1e-3;
+    std::memcpy(out.point, in.position, sizeof out.point);
+    out.normal[0] = -1;
+    out.force[0] = 1;
+    return HSP_OK;
+  }
+};
+
 /// Does in step what a shape must never do, for the proof that the guard sees it.
 struct Allocating : hapticd::Shape {
   int unused;
@@ -298,4 +323,4 @@ struct Throwing : hapticd::Shape {
 }  // namespace
 
 HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude, Aligning, Obliging,
-               Searched, Clocked)
+               Searched, Clocked, Ramming)

@@ -202,6 +202,19 @@ TEST(Admittance, StaysBoundedAtTheEndOfTheArmAndComesBack) {
   EXPECT_EQ(rig.arm->limiter().fault(), Fault::kNone);
 }
 
+TEST(Admittance, TheVirtualMassWaitsForAnArmThatDoesNotFollow) {
+  Rig rig;
+  rig.tick({0, 0, 0}, {0, 0, 0});
+  Admittance mass({kMass, kDamping}, rig.arm->device());
+  ASSERT_TRUE(mass.start(rig.arm->sample().position));
+  const Vector3d stuck = mass.position(), push(0, 0, -20);
+  for (int i = 0; i < 1500; ++i) {
+    mass.step(push, stuck, kPeriod);
+    ASSERT_LE((mass.position() - stuck).norm(), Admittance::kMaxLead + 1e-4) << i;
+  }
+  EXPECT_LT(mass.velocity().norm(), 2 * kPeriod * push.norm() / kMass) << "it gathers no speed meanwhile";
+}
+
 TEST(Admittance, AFaultEndsItAndTheForceFades) {
   Rig rig("script: guided, mass: 0.5, stiffness: 300, damping: 10, center: [0, 0, 0], radius: 0, tremor: 0, wander: 0",
           kWall);

@@ -222,6 +222,17 @@ TEST(Core, BadSampleGivesNoForceAndTheNextGoodOneIsFeltAgain) {
   EXPECT_DOUBLE_EQ(tickOnce(*world, 2, good).y(), 1.0);
 }
 
+TEST(Core, ABadSampleEndsTheForceOfAShapeThatPushesAllTheSame) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("turning"));
+  auto world = testWorld(scene);
+  Probe probe = probeAt({0, 0, 0});
+  EXPECT_DOUBLE_EQ(tickOnce(*world, 0, probe).y(), 1.0);
+  probe.valid = false;
+  EXPECT_EQ(tickOnce(*world, 1, probe), Vector3d::Zero());
+  EXPECT_EQ(world->core().torque(0), Vector3d::Zero());
+}
+
 TEST(Core, ADampedWallMayPushAsHardAsItsDampingSays) {
   scene::Scene scene;
   scene.models.push_back(testModel("wall", {number(0, HSP_REAL, 1000), number(1, HSP_REAL, 500)}));

@@ -129,6 +129,27 @@ TEST(Entering, AnOrderOfAnEarlierRecordingFadesInAsItDidThen) {
   EXPECT_DOUBLE_EQ(wall.largestAt(-0.001, 60), 1.0);
 }
 
+TEST(Entering, AModelThatLeavesFadesOutBeforeItIsGone) {
+  Coming wall("wall");
+  Core& core = wall.world->core();
+  wall.largestAt(0.05, 120);
+  double before = wall.forceAt(-0.001);
+  ASSERT_DOUBLE_EQ(before, 1);
+  wall.order(Order::Kind::kRelease, 0);
+  uint32_t gone = 0;
+  int ticks = 0;
+  for (; !core.takeReleased(gone) && ticks < 1000; ++ticks) {
+    const double force = wall.forceAt(-0.001);
+    EXPECT_LE(before - force, 0.1) << "no step of a whole force, in tick " << ticks;
+    before = force;
+  }
+  EXPECT_GT(ticks, 10);
+  EXPECT_LT(ticks, 1000);
+  EXPECT_LT(before, 0.1) << "it was hardly felt when it went";
+  EXPECT_EQ(core.present(), 0u);
+  EXPECT_EQ(wall.forceAt(-0.001), 0);
+}
+
 TEST(Entering, EnablingWhatIsFeltChangesNothing) {
   Coming wall("wall");
   wall.largestAt(0.05, 120);

@@ -21,6 +21,29 @@ TEST(Loop, TicksOncePerPeriodAndEndsWithZeroForce) {
   EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kStopped);
 }
 
+/// A hand goes against a program's push of 2 N. A spring of a program may give this work back, so it is no debt.
+TEST(Loop, WhatAHandPutIntoAProgramsPushIsKept) {
+  Rig* self = nullptr;
+  link::PushSlot slot;
+  double kept = 0;
+  const auto answer = [&self, &slot, &kept, tick = uint64_t{0}](Nanoseconds) mutable {
+    hapticd_push push{};
+    push.tick = tick++;
+    push.force[0] = -2;
+    slot.put(push);
+    if (push.tick == 200) kept = self->arms[0]->passivity()->energy();
+    return Nanoseconds{0};
+  };
+  Rig rig(7, answer, 300, "wall", {}, {},  // it moves along x at 0.3 m/s from 0.05 s on, above the wall
+          {number(0, HSP_REAL, -0.01), number(5, HSP_REAL, 0.3)}, [](scene::Limits&) {},
+          {.mode = scene::ClientMode::kAdd, .max_force = 3});
+  self = &rig;
+  ASSERT_NE(rig.arms[0]->passivity(), nullptr);
+  rig.arms[0]->clients().begin(0, slot);
+  rig.loop->run();
+  EXPECT_NEAR(kept, 2 * 0.3 * 0.15, 0.01);
+}
+
 TEST(Loop, DryCyclesPushNothingAndLeaveTheRunAsItIs) {
   Rig plain(0),
       dry(0, [](Nanoseconds deadline) { return deadline == 50'000'000 ? Nanoseconds{2'500'000} : Nanoseconds{0}; });

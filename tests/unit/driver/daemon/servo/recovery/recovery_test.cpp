@@ -18,8 +18,13 @@ scene::Value at(uint32_t index, double seconds) {
 /// Fails from 0.05 to 0.3 s.
 struct Recovering : Rig {
   explicit Recovering(
-      int failure, std::function<Nanoseconds(Nanoseconds)> tick = [](Nanoseconds) { return 0; })
-      : Rig(failure, std::move(tick), kTicks, "wall", {}, {}, {at(3, 0.3)}) {}
+      int failure, std::function<Nanoseconds(Nanoseconds)> tick = [](Nanoseconds) { return 0; },
+      const std::vector<scene::Value>& more = {})
+      : Rig(failure, std::move(tick), kTicks, "wall", {}, {}, joined({at(3, 0.3)}, more)) {}
+  static std::vector<scene::Value> joined(std::vector<scene::Value> values, const std::vector<scene::Value>& more) {
+    values.insert(values.end(), more.begin(), more.end());
+    return values;
+  }
   double forceAt(double t) const {
     for (const BlackBoxRow& row : telemetry->blackBox())
       if (std::abs(row.t - t) < 2e-4) return static_cast<double>(row.force[1]);
@@ -47,6 +52,21 @@ TEST_P(Recovery, ComesInARampHalfASecondAfterTheDeviceIsWell) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Each, Recovery, ::testing::Values(kLost, kSilent, kAtFault, kUncalibrated));
+
+TEST(RecoveryTest, AForceComesBackOnlyIfTheTipRestsOrNoForceActs) {
+  const auto onTime = [](Nanoseconds) { return Nanoseconds{0}; };
+  const scene::Value fast = at(5, 0.1), outside = at(0, -0.01);
+  Recovering pressed(kLost, onTime, {fast});
+  pressed.loop->run();
+  EXPECT_EQ(pressed.arms[0]->limiter().recovered(), Fault::kNone) << "5 cm in the half second";
+  EXPECT_EQ(pressed.forceAt(1.2), 0);
+  Recovering slow(kLost, onTime, {at(5, 0.03)});
+  slow.loop->run();
+  EXPECT_EQ(slow.arms[0]->limiter().recovered(), Fault::kDeviceLost) << "1.5 cm in the half second";
+  Recovering free(kLost, onTime, {fast, outside});
+  free.loop->run();
+  EXPECT_EQ(free.arms[0]->limiter().recovered(), Fault::kDeviceLost);
+}
 
 TEST(RecoveryTest, WhatWasNotANumberStaysOff) {
   Recovering rig(kNotANumber);

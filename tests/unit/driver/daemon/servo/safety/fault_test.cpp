@@ -254,6 +254,24 @@ TEST(HeldTick, LeavesNoSpikeInTheVelocity) {
   EXPECT_NEAR((*arm)->probe().velocity.x(), kSpeed, 1e-9);
 }
 
+TEST(HeldTick, ACutBeforeTheWriteOfATickKeepsTheMotorsOff) {
+  Rig rig(0);
+  Arm& arm = *rig.arms[0];
+  for (int i = 0; i < 60; ++i) {
+    const auto now = static_cast<Nanoseconds>(i) * 1'000'000;
+    ASSERT_TRUE(arm.read(now, i == 0 ? 0 : 1e-3).valid);
+    if (i == 50) {
+      ASSERT_EQ(rig.log->mode, static_cast<uint32_t>(HDV_TORQUE));
+      arm.cut(0.004);
+    }
+    arm.write(now, 1e-3, {0, 1, 0}, {0, 0, 0});
+    if (i >= 50) {
+      EXPECT_EQ(rig.log->mode, static_cast<uint32_t>(HDV_OFF)) << i;
+    }
+  }
+  EXPECT_EQ(arm.limiter().fault(), Fault::kStuck);
+}
+
 /// Ten ticks to a sample: the hand is as fast as it is, not ten times as fast in one tick and still in nine.
 TEST(SlowDevice, GivesTheVelocityOfTheHand) {
   constexpr double kSpeed = 1.5;

@@ -41,6 +41,14 @@ TEST(Controller, TakesEnergyOnlyWhenTheBooksAreNegative) {
   EXPECT_GT(controller.dissipated(), 0);
 }
 
+TEST(Controller, AContactBeginsWithoutTheCreditOfTheLastOne) {
+  PassivityController controller(50);
+  for (int i = 0; i < 100; ++i) controller.update({-1e-4 * i, 0, 0}, {2, 0, 0}, kPeriod);  // the hand gives 20 mJ
+  EXPECT_GT(controller.energy(), 0.01);
+  controller.update({-0.01, 0, 0}, {0, 0, 0}, kPeriod);
+  EXPECT_LE(controller.energy(), 0);
+}
+
 TEST(Controller, CalmsAWallTenTimesTooStiff) {
   const double stiffness = 10 * 2 * 0.1 / kPeriod;
   PassivityController controller(stableDamping(0.075, kPeriod), 0.1);
