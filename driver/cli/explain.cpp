@@ -81,6 +81,20 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
 /// The debug messages of the models. The key is the name of the model.
 using Details = std::multimap<std::string, std::string>;
 
+std::string surfacesOf(const host::ShapeInstance& shape, double activation_radius) {
+  if (shape.surfaces() == nullptr) return "is traced by its plugin in every tick";
+  const uint32_t count = shape.surfaces()->surface_count;
+  return std::to_string(count) + (count == 1 ? " surface" : " surfaces") +
+         ", traced while within the activation radius, " + document::numberText(activation_radius) + " m";
+}
+
+std::string motionOf(const scene::Model& model, const host::ShapeInstance& shape) {
+  if ((shape.report().flags & HSP_R_MOVES) != 0) return "moved by its plugin: integrated in every tick";
+  if (!model.kinematic) return "none: no integrator, its pose is fixed";
+  if (model.path.empty()) return "rests until a program moves it";
+  return "follows " + std::to_string(model.path.size()) + " points of a path";
+}
+
 void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs,
                    const Details& details) {
   std::printf("models\n");
@@ -89,20 +103,11 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     const host::ShapeInstance& shape = *world.shapes()[i];
     const hsp_report& report = shape.report();
     std::printf("  %s  (%s, %s)\n", model.name.c_str(), model.plugin.c_str(), where(model.place).c_str());
-    const uint32_t count = shape.surfaces() != nullptr ? shape.surfaces()->surface_count : 0;
-    const std::string surfaces = shape.surfaces() != nullptr
-                                     ? std::to_string(count) + (count == 1 ? " surface" : " surfaces") +
-                                           ", traced while within the activation radius, " +
-                                           document::numberText(scene.servo.activation_radius) + " m"
-                                     : "is traced by its plugin in every tick";
     if (!model.enabled)
       printLine("  starts", "disabled: neither felt nor traced until it is enabled (hapticd ctl enable " +
                                 shellWord(model.name) + "); what follows is its cost then");
-    printLine("  surfaces", surfaces);
-    printLine("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
-                          : model.kinematic && model.path.empty() ? std::string("rests until a program moves it")
-                          : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
-                                            : "none: no integrator, its pose is fixed");
+    printLine("  surfaces", surfacesOf(shape, scene.servo.activation_radius));
+    printLine("  motion", motionOf(model, shape));
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
       printLine("  deformation", "not computed until it is touched; then only moving control points are integrated");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
@@ -115,9 +120,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
               (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     printLine("  memory", bytes(report.locked_bytes));
     printLine("  cost", std::to_string(costs[i]) +
-                            " ns (median) of a step while the probe rests 1 mm in front of the model's box; a hand on "
-                            "its path may take far "
-                            "less or more: see --cost");
+                            " ns (median) of a step while the probe rests 1 mm in front of the model's box; "
+                            "a hand on its path may take far less or more: see --cost");
     const auto [begin, end] = details.equal_range(model.name);
     for (auto detail = begin; detail != end; ++detail) printLine(detail == begin ? "  details" : "", detail->second);
   }

@@ -211,18 +211,18 @@ void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
 const TracedShape::CachedSearch& TracedShape::searchAbout(const Eigen::Vector3d& p, double radius) const {
   constexpr double kSamePlace = 2e-3;  // [m] greatest distance of p from the place of the search
   constexpr double kSameHand = 1e-3;   // [m] greatest path of the same hand between two requests: 0.2 m/s
-  constexpr int kMostTold = 20;
+  constexpr int kMostUses = 20;
   for (CachedSearch& search : searches_)
     if (search.radius == radius && (search.at - p).norm() < kSamePlace && (search.asked - p).norm() < kSameHand) {
       search.asked = p;
-      if (search.told++ < kMostTold) return search;
+      if (search.uses++ < kMostUses) return search;
       search.radius = -1;
     }
   CachedSearch& search = searches_[next_search_];
   next_search_ = (next_search_ + 1) % searches_.size();
   search.at = search.asked = p;
   search.radius = radius;
-  search.told = 1;
+  search.uses = 1;
   model_->search(p, radius, search.found);
   return search;
 }

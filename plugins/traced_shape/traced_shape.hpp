@@ -119,7 +119,7 @@ class TracedShape : public Shape {
   /// [m] with a contact hysteresis of at least this, the contact never changes to another face
   static constexpr double kHoldAlways = 1;
   static constexpr double kNotGiven = -1;
-  static constexpr double kLargestTip = 0.05;  ///< [m] half of the way at which surfaces are traced by default
+  static constexpr double kLargestTip = 0.05;  ///< [m] half of the distance at which surfaces are traced by default
   static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
@@ -138,10 +138,16 @@ class TracedShape : public Shape {
     /// hand
     Eigen::Vector3d asked{0, 0, 0};
     double radius = -1;
-    int told = 0;  ///< number of requests answered with this result
+    int uses = 0;  ///< number of requests answered with this result
     trace::Found found;
   };
 
+  template <class T>
+  static hsp_ext_surfaces surfacesOf(uint32_t count);
+  template <class T>
+  static hsp_ext_geometry geometryOf();
+  template <class T>
+  static hsp_ext_names namesOf();
   const CachedSearch& searchAbout(const Eigen::Vector3d& p, double radius) const;
   void beginAnew(uint32_t probe) noexcept HSP_RT;
   template <class FootAt>
@@ -195,43 +201,56 @@ contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const 
 }
 
 template <class T>
+hsp_ext_surfaces TracedShape::surfacesOf(uint32_t count) {
+  return {sizeof(hsp_ext_surfaces), count,
+          [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
+            const TracedShape& self = *reinterpret_cast<const T*>(shape);
+            return self.nearby(p_model, radius, out, cap);
+          },
+          [](hsp_shape* shape, const hsp_near* near) HSP_RT -> hsp_status {
+            TracedShape& self = *reinterpret_cast<T*>(shape);
+            return self.start(*near);
+          },
+          [](hsp_shape* shape, uint32_t probe, uint32_t surface) HSP_RT -> hsp_status {
+            TracedShape& self = *reinterpret_cast<T*>(shape);
+            return self.stop(probe, surface);
+          }};
+}
+
+template <class T>
+hsp_ext_geometry TracedShape::geometryOf() {
+  return {sizeof(hsp_ext_geometry), 0,
+          [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
+            TracedShape& self = *reinterpret_cast<T*>(shape);
+            return self.mesh(chord_error, *out);
+          },
+          [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
+            const TracedShape& self = *reinterpret_cast<T*>(shape);
+            return self.bounds(min, max);
+          }};
+}
+
+template <class T>
+hsp_ext_names TracedShape::namesOf() {
+  return {sizeof(hsp_ext_names), 0, [](hsp_shape* shape, uint32_t feature, char* text, uint64_t cap) -> int64_t {
+            const TracedShape& self = *reinterpret_cast<T*>(shape);
+            return self.nameOf(feature, text, cap);
+          }};
+}
+
+template <class T>
 const void* TracedShape::tracedExtension(const char* name) {
   const std::string_view wanted = name;
   if (wanted == HSP_EXT_SURFACES && model_) {
-    surfaces_extension_ = {
-        sizeof(hsp_ext_surfaces), static_cast<uint32_t>(model_->surfaceCount()),
-        [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
-          const TracedShape& self = *reinterpret_cast<const T*>(shape);
-          return self.nearby(p_model, radius, out, cap);
-        },
-        [](hsp_shape* shape, const hsp_near* near) HSP_RT -> hsp_status {
-          TracedShape& self = *reinterpret_cast<T*>(shape);
-          return self.start(*near);
-        },
-        [](hsp_shape* shape, uint32_t probe, uint32_t surface) HSP_RT -> hsp_status {
-          TracedShape& self = *reinterpret_cast<T*>(shape);
-          return self.stop(probe, surface);
-        }};
+    surfaces_extension_ = surfacesOf<T>(static_cast<uint32_t>(model_->surfaceCount()));
     return &surfaces_extension_;
   }
   if (wanted == HSP_EXT_GEOMETRY && (model_ || part_)) {
-    geometry_extension_ = {sizeof(hsp_ext_geometry), 0,
-                           [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
-                             TracedShape& self = *reinterpret_cast<T*>(shape);
-                             return self.mesh(chord_error, *out);
-                           },
-                           [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
-                             const TracedShape& self = *reinterpret_cast<T*>(shape);
-                             return self.bounds(min, max);
-                           }};
+    geometry_extension_ = geometryOf<T>();
     return &geometry_extension_;
   }
   if (wanted == HSP_EXT_NAMES && part_) {
-    names_extension_ = {sizeof(hsp_ext_names), 0,
-                        [](hsp_shape* shape, uint32_t feature, char* text, uint64_t cap) -> int64_t {
-                          const TracedShape& self = *reinterpret_cast<T*>(shape);
-                          return self.nameOf(feature, text, cap);
-                        }};
+    names_extension_ = namesOf<T>();
     return &names_extension_;
   }
   return nullptr;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/file_beginning.hpp"
+#include "base/file_ending.hpp"
 #include "cli/recording/joint_ranges.hpp"
 #include "cli/recording/recorded_marks.hpp"
 #include "cli/recording/recorded_orders.hpp"
@@ -53,8 +54,15 @@ std::string timesInWords(uint64_t count) {
   return std::to_string(count) + (count == 1 ? " time" : " times");
 }
 
+/// Returns what a run without a message in its log has to tell. A daemon that crashes writes its black box itself, and
+/// no message of the crash.
+const char* nothingTold(const std::string& file) {
+  return endingOf(file) == ".flight" ? "no fault before its end, which was a crash or a call that did not end"
+                                     : "no fault, and no model was silenced, came or left";
+}
+
 /// Prints the events that the log of the run had. Touches and clicks are many, so only their number is printed.
-void printEvents(const std::vector<servo::RecordedMessage>& messages) {
+void printEvents(const std::string& file, const std::vector<servo::RecordedMessage>& messages) {
   struct Counts {
     uint64_t touches = 0, clicks = 0;
   };
@@ -72,7 +80,7 @@ void printEvents(const std::vector<servo::RecordedMessage>& messages) {
     }
   }
   if (left > 0) std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream events\n", left);
-  if (lines == 0) std::printf("  no fault, and no model was silenced, came or left\n");
+  if (lines == 0) std::printf("  %s\n", nothingTold(file));
   for (const auto& [model, counts] : felt)
     std::printf("  %s was touched %s%s\n", model.c_str(), timesInWords(counts.touches).c_str(),
                 counts.clicks > 0 ? (", and clicked " + timesInWords(counts.clicks) + " (in or out)").c_str() : "");
@@ -107,7 +115,7 @@ int explainRecording(const std::string& file) {
   if (!run) return fail(kBadInput, file + ": " + run.error());
   const servo::RunModels models(**recording, run->scene);
   printRun(file, **recording, *run, models);
-  printEvents(servo::messagesOf(**recording, *run, models));
+  printEvents(file, servo::messagesOf(**recording, *run, models));
   printLines("marks", markLines(**recording), "marks");
   printLines("orders", recordedOrders(**recording, *run, models), "orders");
   printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");

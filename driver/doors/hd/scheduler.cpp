@@ -60,7 +60,7 @@ void reportRates(double wanted, double daemon) {
   char text[256];
   int at =
       std::snprintf(text, sizeof text,
-                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in ticks of the daemon, which runs at %.0f Hz\n"
+                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in the ticks of the daemon, of %.0f Hz\n"
                     "  fix: use one of the rates %.0f",
                     wanted, daemon, daemon);
   for (int every = 2; every <= kShown && at > 0 && static_cast<size_t>(at) < sizeof text; ++every)

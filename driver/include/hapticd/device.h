@@ -6,7 +6,8 @@
  * are in the DEVICE frame, which is fixed to the arm's base; the device file says where the base is in the world.
  *
  * Life:  create -> set* -> open -> start -> read / write* -> stop -> close -> destroy. The notes are at the end.
- * Time is an argument: a simulated arm advances to the time given to read() and never reads a clock. */
+ * Time is an argument: now_ns is CLOCK_MONOTONIC, or the time of a run in virtual time. A simulated arm
+ * advances to the time given to read() and never reads a clock. */
 #ifndef HAPTICD_DEVICE_H
 #define HAPTICD_DEVICE_H
 #include "abi.h"
@@ -46,9 +47,10 @@ enum {                             /* hdv_sample.flags */
        HDV_S_FAULT = 1u << 3,      /* the hardware reports a fault: the host takes the force away */
        HDV_S_LOST = 1u << 4        /* the arm is gone (unplugged); the module itself searches for it */
 };
-typedef struct hdv_sample {   /* module -> host */
-  uint64_t time_ns, sequence; /* time of the measurement; a number that grows with each new sample */
-  uint32_t flags, buttons;    /* HDV_S_*; bit i is 1 while button i is down */
+typedef struct hdv_sample { /* module -> host */
+  /* ns: time of the measurement on the clock of now_ns, 0 if unknown; a number that grows with each new sample */
+  uint64_t time_ns, sequence;
+  uint32_t flags, buttons; /* HDV_S_*; bit i is 1 while button i is down */
   double position[HDV_MAX_JOINTS], velocity[HDV_MAX_JOINTS], torque[HDV_MAX_JOINTS]; /* rad, rad/s, N*m (m, m/s, N) */
 } hdv_sample;
 enum { HDV_OFF = 0, HDV_TORQUE = 1, HDV_POSITION = 2 };    /* hdv_command.mode: which numbers are used */
@@ -60,7 +62,7 @@ typedef struct hdv_command {                               /* host -> module */
 typedef struct hdv_start {
   uint32_t struct_size, reserved;
   double rate_hz;    /* Hz: how often the host will call read() and write() */
-  uint64_t time_ns;  /* time of the first read() */
+  uint64_t time_ns;  /* ns: time of the first read(), on the clock of now_ns */
   double gravity[3]; /* m/s^2, DEVICE frame */
 } hdv_start;
 

@@ -37,7 +37,7 @@ enum {
 typedef struct hsp_probe {         /* host -> plugin */
   double position[3], velocity[3]; /* m; m/s relative to the model, zero without HSP_R_VELOCITY */
   double orientation[4];           /* unit quaternion w,x,y,z; identity if the arm measures none */
-  uint64_t time_ns;                /* time at which the arm was sampled, which is earlier than the call of step() */
+  uint64_t time_ns;                /* ns: time of this tick, counted from the first tick of the run */
   uint32_t flags, reserved;        /* HSP_IN_* */
 } hsp_probe;
 typedef struct hsp_contact {     /* plugin -> host; the host zeroes it before step() */

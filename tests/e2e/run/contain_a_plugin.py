@@ -47,6 +47,8 @@ def crash(folder, environment, how, reasons):
     box = os.path.join(environment["STATE_DIRECTORY"], "black-box-deadly.flight")
     code, out, err = hapticd(environment, "plot", box, "--out", os.path.join(folder, how + ".svg"))
     check(f"{how}: the black box bears its name and can be drawn", code == 0, (code, out, err))
+    code, out, err = hapticd(environment, "explain", box)
+    check(f"{how}: and explain says that it ends in a crash", code == 0 and "no fault before its end, which was a crash" in out, (code, out, err))
     os.path.exists(box) and os.remove(box)
     code, _, err = hapticd(environment, "run", scene, "--for", "0.2", "--report", os.path.join(folder, "report.json"))
     models = json.load(open(os.path.join(folder, "report.json")))["models"]

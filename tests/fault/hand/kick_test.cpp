@@ -252,7 +252,7 @@ TEST(AForceThatGoesAlongWithTheHand, IsSilencedWhateverTheShapeSaysOfItself) {
       return Nanoseconds{0};
     });
     EXPECT_EQ(scenario.trouble(), ShapeFault::kGives) << how << " " << jump << " " << sets;
-    EXPECT_LT(given, 1.5 * 8.5 * EnergyAccount::kWay) << how << " " << jump << " " << sets;
+    EXPECT_LT(given, 1.5 * 8.5 * EnergyAccount::kDistance) << how << " " << jump << " " << sets;
     EXPECT_GT(given, 1) << "nothing was tried: no test";
   }
 }

@@ -52,17 +52,30 @@ double fullForce(const scene::Limits& limits, const hdv_info& info) {
 
 /// Returns an error if the settings for HDAPI programs name something that the device does not have; "" if all exists.
 std::string refusalOf(const std::optional<scene::HdArm>& hd, const hdv_info& info) {
-  const auto told = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
+  const auto missing = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
     return key + " is " + std::to_string(wrong) + ", but the device has " + std::to_string(count) + " " + things +
            "; expected one of them, counted from 0";
   };
   for (size_t i = 0; hd && i < hd->joints.size(); ++i)
     if (hd->joints[i].joint >= info.joint_count)
-      return told("hd.joints[" + std::to_string(i) + "][0]", hd->joints[i].joint, info.joint_count, "joints");
+      return missing("hd.joints[" + std::to_string(i) + "][0]", hd->joints[i].joint, info.joint_count, "joints");
   for (size_t i = 0; hd && i < hd->buttons.size(); ++i)
     if (hd->buttons[i] >= info.buttons)
-      return told("hd.buttons[" + std::to_string(i) + "]", hd->buttons[i], info.buttons, "buttons");
+      return missing("hd.buttons[" + std::to_string(i) + "]", hd->buttons[i], info.buttons, "buttons");
   return "";
+}
+
+/// Returns why the device cannot be used as its file describes it; "" if it can. A replay has the device of a
+/// recording, whose buttons may be unknown.
+std::string refusalOf(const scene::Device& described, const hdv_info& info, bool replayed) {
+  if (described.admittance)
+    if (std::string no = Admittance::refusal(info); !no.empty()) return no;
+  if (replayed) return "";
+  if (std::string no = refusalOf(described.hd, info); !no.empty()) return no;
+  const auto& button = described.limits.enable.button;
+  if (!button || static_cast<uint32_t>(*button) < info.buttons) return "";
+  return "limits.enable.button is " + std::to_string(*button) + ", but the device has " + std::to_string(info.buttons) +
+         " buttons; forces could never be enabled; expected a button of the device, counted from 0";
 }
 
 }  // namespace
@@ -91,6 +104,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (!device) return Error{device.error()};
   (*device)->playBack(options.playback);
   if (auto opened = (*device)->open(); !opened) return Error{opened.error(), opened.kind()};
+  if (const std::string no = refusalOf(described, (*device)->info(), options.playback != nullptr); !no.empty())
+    return Error{"device '" + described.name + "': " + no};
   const Limiter limiter(limitsOf(described.limits, (*device)->info(), options), (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
   arm->as_found_ = options.found_pressed;
@@ -102,23 +117,12 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
   arm->limiter_.expectPeriod(std::max(1 / options.rate, arm->sample_period_));
   arm->limiter_.expectMotion(estimatorDelay(servo.velocity, options.rate), mass);
-  if (described.admittance) {
-    if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
-      return Error{"device '" + described.name + "': " + no};
-    arm->admittance_.emplace(*described.admittance, *arm->device_);
-  }
+  if (described.admittance) arm->admittance_.emplace(*described.admittance, *arm->device_);
   const bool unknown = (arm->info().capabilities & HDV_C_UNVERIFIED) != 0 || arm->clients_.possible();
   if (described.limits.passivity.value_or(unknown)) {
     arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
                             arm->info().resolution_m);
   }
-  if (const std::string no = refusalOf(described.hd, arm->info()); !no.empty() && options.playback == nullptr)
-    return Error{"device '" + described.name + "': " + no};
-  const auto& button = described.limits.enable.button;
-  if (button && static_cast<uint32_t>(*button) >= arm->info().buttons && options.playback == nullptr)
-    return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
-                 ", but the device has " + std::to_string(arm->info().buttons) +
-                 " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
   if (usesVelocity(described, options.clients, options.needs_velocity)) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};

@@ -43,8 +43,9 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   read_status_ = device_->read(now, sample_);
   taken_.store(false);
   const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
-  const bool told = sampled && (sample_.sequence > 0 || as_found_);  // before the first report the buttons are unknown
-  limiter_.watchButtons(told ? std::optional(sample_.buttons) : std::nullopt);
+  // Before the first report the buttons are unknown.
+  const bool reported = sampled && (sample_.sequence > 0 || as_found_);
+  limiter_.watchButtons(reported ? std::optional(sample_.buttons) : std::nullopt);
   found_pressed_.store(limiter_.foundPressed(), std::memory_order_relaxed);
   probe_.valid = checkSample(read_status_, now) && locate();
   if (!probe_.valid) {

@@ -86,8 +86,8 @@ void ClientForces::step(uint64_t tick, double dt) noexcept HSP_RT {
     if (client.slot == nullptr && client.gain == 0) --places_;
   }
   if (mode_ != scene::ClientMode::kInstead) return;
-  const double wanted = 1 - most;
-  share_ = wanted > share_ ? std::min(wanted, share_ + dt / kFadeIn) : std::max(wanted, share_ - dt / kFadeOut);
+  // The models fade out as the programs fade in. They come back no faster, although a silent program fades out faster.
+  share_ = std::min(1 - most, share_ + dt / kFadeIn);
 }
 
 void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_RT {

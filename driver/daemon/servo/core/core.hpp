@@ -164,7 +164,7 @@ class Core {
   uint32_t present() const noexcept { return present_; }
 
  private:
-  /// Returns the place of a model and a probe in contacts_ and claims_.
+  /// Returns the place of a model and a probe in contacts_, claims_ and energies_.
   size_t at(uint32_t model, uint32_t probe) const noexcept { return size_t{model} * probe_count_ + probe; }
   bool adopt(ModelState& place, const Order& order) noexcept HSP_RT;
   bool enable(ModelState& model, uint32_t param) noexcept HSP_RT;

@@ -122,7 +122,7 @@ void Loop::run() noexcept {
   finished_.store(true, std::memory_order_release);
 }
 
-/// Tells other threads and processes that a tick has ended, once its row is written.
+/// Shows other threads and processes that a tick has ended. Called once its row is written.
 void Loop::publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT {
   door_.written(number);
   tick_count_.store(number + 1, std::memory_order_relaxed);

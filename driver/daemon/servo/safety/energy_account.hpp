@@ -23,10 +23,10 @@ class EnergyAccount {
   /// without a force along them, and sudden changes of the foot at a fast hand, give up to 30 mJ.
   static constexpr double kMostGiven = 0.2;
   static constexpr double kMostPower = 0.3;
-  /// [m], [m/s] Every model may give the work of the arm's whole force over this way at once, as a magnet that draws
-  /// the hand across the room of the arm does, and over this speed for as long as it likes, as one that leads the hand
-  /// does.
-  static constexpr double kWay = 0.5;
+  /// [m], [m/s] Every model may give the work of the arm's whole force over this distance at once, as a magnet that
+  /// draws the hand across the room of the arm does, and over this speed for as long as it likes, as one that leads the
+  /// hand does.
+  static constexpr double kDistance = 0.5;
   static constexpr double kSpeed = 0.2;
 
   /// [rt] Adds the work of the push of this step since that of the last one. The mean of both forces is used: so a
@@ -38,7 +38,7 @@ class EnergyAccount {
   bool step(const Push& push, double dt, double reported = 0, double most_force = 0) noexcept HSP_RT;
   /// [rt] Forgets the last push, but not what was given: the probe jumped, or its sample was bad.
   void forgetPush() noexcept HSP_RT { known_ = false; }
-  /// [rt] Tells that somebody has set a parameter of the model.
+  /// [rt] Called when somebody has set a parameter of the model.
   void noteChange() noexcept HSP_RT { changed_ = true; }
 
   double given() const noexcept { return given_; }  ///< [J] energy that the surface gave; < 0: it may give so much back

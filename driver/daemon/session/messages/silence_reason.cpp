@@ -48,6 +48,48 @@ std::string wordOf(const std::string& file) {
   return file.starts_with("FILE.so ") ? file : shellWord(file);
 }
 
+/// Returns what the plugin of a silenced model did; "" if its model is not silenced for it.
+std::string whatItDid(ShapeFault fault, int32_t failed_status, const Breach& breach) {
+  switch (fault) {
+    case ShapeFault::kNone:
+    case ShapeFault::kLost:
+      return "";
+    case ShapeFault::kNotFinite:
+      return "gave a force, pose or foot point that is not finite";
+    case ShapeFault::kBadStatus:
+      return "returned status " + std::to_string(failed_status) + ", which a step may not return";
+    case ShapeFault::kOverrun:
+      return "took longer than the budget of a tick, several times";
+    case ShapeFault::kJump:
+      return "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(breach);
+    case ShapeFault::kTwists:
+      return "gave torques that jumped by more than its claimed stiffness allows";
+    case ShapeFault::kRunsAway:
+      return "moved its body at more than 20 m/s against the hand: it runs away, by a wrong sign of what moves it "
+             "(the force on the body is the opposite of the force on the probe), by a spring that is too stiff for its "
+             "integrator, or because the scene gives it too little mass or drag for its spring";
+    case ShapeFault::kGives:
+      return "gave the hand energy from nowhere: its surface turned round by itself, "
+             "or pushed more on the way out than on the way in, as a damping does that is too large for the rate, "
+             "or its force went along with the hand; "
+             "a shape that gives energy on purpose reports HSP_R_JUMPS, and may give more";
+    case ShapeFault::kNotUnit:
+      return "gave a pose whose quaternion does not have length 1";
+    case ShapeFault::kPulls:
+      return "pulled the probe into its surface" + placeOf(breach) + ": " + causeOf(breach) +
+             ", although it reports to push only (HSP_R_PUSHES)";
+  }
+  return "";
+}
+
+/// Returns what the command after it does about a fault.
+std::string adviceFor(ShapeFault fault) {
+  if (fault == ShapeFault::kOverrun) return "measure it with";
+  const bool in_one_step =
+      fault == ShapeFault::kNotFinite || fault == ShapeFault::kBadStatus || fault == ShapeFault::kNotUnit;
+  return in_one_step ? "find the step with" : "test it with";
+}
+
 }  // namespace
 
 std::string fileOfPlugin(const std::string& plugin) {
@@ -73,47 +115,11 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
 
 std::string silenceReason(const std::string& model, const std::string& file, ShapeFault fault, int32_t failed_status,
                           const Breach& breach) {
-  const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + wordOf(file);
-  switch (fault) {
-    case ShapeFault::kNone:
-    case ShapeFault::kLost:
-      return "";
-    case ShapeFault::kNotFinite:
-      return who + "gave a force, pose or foot point that is not finite; it was silenced; find the step with: " + check;
-    case ShapeFault::kBadStatus:
-      return who + "returned status " + std::to_string(failed_status) +
-             ", which a step may not return; it was silenced; find the step with: " + check;
-    case ShapeFault::kOverrun:
-      return who + "took longer than the budget of a tick, several times; it was silenced; measure it with: " + check;
-    case ShapeFault::kJump:
-      return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(breach) +
-             "; it was silenced; " + onPurpose(breach) + "test it with: " + check;
-    case ShapeFault::kTwists:
-      return who +
-             "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: " +
-             check;
-    case ShapeFault::kRunsAway:
-      return who +
-             "moved its body at more than 20 m/s against the hand: it runs away, by a wrong sign of what moves it (the "
-             "force on the body is the opposite of the force on the probe), by a spring that is too stiff for its "
-             "integrator, or because the scene gives it too little mass or drag for its spring; "
-             "it was silenced; test it with: " +
-             check;
-    case ShapeFault::kGives:
-      return who +
-             "gave the hand energy from nowhere: its surface turned round by itself, or pushed more on the way out "
-             "than on the way in, as a damping does that is too large for the rate, or its force went along with the "
-             "hand; a shape that gives energy on purpose reports HSP_R_JUMPS, and may give more; "
-             "it was silenced; test it with: " +
-             check;
-    case ShapeFault::kNotUnit:
-      return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;
-    case ShapeFault::kPulls:
-      return who + "pulled the probe into its surface" + placeOf(breach) + ": " + causeOf(breach) +
-             ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it with: " + check +
-             ", which also says where";
-  }
-  return "";
+  const std::string what = whatItDid(fault, failed_status, breach);
+  if (what.empty()) return "";
+  return "model " + model + ": its plugin " + what + "; it was silenced; " +
+         (fault == ShapeFault::kJump ? onPurpose(breach) : "") + adviceFor(fault) + ": hapticd plugin check " +
+         wordOf(file) + (fault == ShapeFault::kPulls ? ", which also says where" : "");
 }
 
 }  // namespace hapticd::servo

@@ -3,6 +3,7 @@
 #include "servo/arm/admittance.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -31,7 +32,7 @@ std::string sceneText(const std::string& device, const std::string& hand, const 
 }
 
 scene::Loaded loadText(const std::string& text) {
-  const auto folder = std::filesystem::temp_directory_path() / "hapticd-admittance";
+  const auto folder = std::filesystem::temp_directory_path() / ("hapticd-admittance-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto file = folder / (::testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".yaml"));
   std::ofstream(file) << text;

@@ -2,6 +2,7 @@
 /// An arm whose base is turned and moved in the world: what it gives is in the world frame, and what reaches its motors
 /// is the same wrench. An error here pushes the hand in a wrong direction.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -24,12 +25,13 @@ const Quaterniond kTurned(0.8, 0.2, -0.4, 0.4);  ///< its orientation: no axis s
 const Vector3d kWeight(0, -9.81, 0);             ///< [m/s^2] gravity in the world
 
 std::string sceneFile() {
-  const auto folder = std::filesystem::temp_directory_path() / "hapticd-mounted";
+  const auto folder = std::filesystem::temp_directory_path() / ("hapticd-mounted-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto file = folder / (::testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".yaml"));
   std::ofstream(file) << "hapticd: 1\nservo: {rate: 1500}\ndevice:\n  file: " HAPTICD_SOURCE_DIR
                          "/config/devices/simulated-sarcos.yaml\n"
                          "  mount: {position: [0.1, -0.2, 0.3], orientation: [0.8, 0.2, -0.4, 0.4]}\n"
+                         "  hand: {script: guided, stiffness: 2000, damping: 50, tremor: 0, wander: 0}\n"
                          "models: []\n";
   return file;
 }
@@ -123,6 +125,26 @@ TEST(MountedArm, ItsMotorsHoldItAgainstTheGravityOfTheWorld) {
             HSP_OK);
   ASSERT_GT(expected.norm(), 1);
   EXPECT_LT((rig.torquesOf(Wrench::Zero()) - expected).norm(), 1e-9 * expected.norm());
+}
+
+TEST(MountedArm, AProgramLeadsItsHandToAPlaceInTheWorld) {
+  Mounted rig;
+  const Vector3d wanted = rig.arm->probe().position + Vector3d(0.03, -0.02, 0.04);
+  hapticd_target target{};
+  Eigen::Map<Vector3d>(target.position) = wanted;
+  target.orientation[0] = 1;
+  link::PoseSlot slot;
+  slot.put(target);
+  ASSERT_TRUE(rig.arm->hand().guided());
+  rig.arm->hand().begin(slot, rig.arm->probe().position);
+  rig.arm->carryWeight(true);
+  for (int i = 1; i < 4500; ++i) {
+    const auto now = static_cast<Nanoseconds>(std::llround(i * kTick * 1e9));
+    rig.arm->hand().step(i * kTick, kTick, 0);
+    rig.arm->read(now, kTick);
+    rig.arm->write(now, kTick, Vector3d::Zero(), Vector3d::Zero());
+  }
+  EXPECT_LT((rig.arm->probe().position - wanted).norm(), 0.01) << "but for the friction of its joints";
 }
 
 }  // namespace

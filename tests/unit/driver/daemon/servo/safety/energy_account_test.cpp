@@ -81,7 +81,7 @@ TEST(EnergyAccount, AShapeThatPretendsToStoreAThousandJoulesGivesBackNoMoreThanA
     };
     for (int i = 0; i < 5000; ++i) ASSERT_FALSE(step(-8));  // 40 J
     while (given < 30 && !step(8)) given += 8e-3;
-    EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven) << depth;
+    EXPECT_LT(given, 8 * EnergyAccount::kDistance + 2 * EnergyAccount::kMostGiven) << depth;
   }
 }
 
@@ -91,7 +91,7 @@ TEST(EnergyAccount, AWrongDepthAfterALostSampleHidesNoMoreThanAnArmPutsIn) {
   account.forgetPush();
   double x = 0, given = 0;
   while (given < 30 && !account.step({{8, 0, 0}, {x += 1e-3, 0, 0}, 1000, true}, kTick, 0, 8)) given += 8e-3;
-  EXPECT_LT(given, 8 * EnergyAccount::kWay + 2 * EnergyAccount::kMostGiven);
+  EXPECT_LT(given, 8 * EnergyAccount::kDistance + 2 * EnergyAccount::kMostGiven);
 }
 
 /// Nor are many: an arm that loses a sample now and then must not hide for ever what goes along with the hand.
@@ -107,7 +107,7 @@ TEST(EnergyAccount, LostSamplesAgainAndAgainHideNoMoreThanTheWayThatNobodySaw) {
       given += 8e-3;
     }
     EXPECT_TRUE(found) << surface;
-    EXPECT_LT(given, 3 * 8 * EnergyAccount::kWay) << surface;
+    EXPECT_LT(given, 3 * 8 * EnergyAccount::kDistance) << surface;
   }
 }
 
@@ -171,7 +171,7 @@ TEST(EnergyAccount, AForceThatGoesAlongWithTheHandIsFoundOut) {
     found = book.step(x += 1e-3 * way, 8 * way);
   }
   EXPECT_TRUE(found);
-  EXPECT_LT(given, 1.5 * FieldBook::kForce * EnergyAccount::kWay);
+  EXPECT_LT(given, 1.5 * FieldBook::kForce * EnergyAccount::kDistance);
 }
 
 /// It rests in each other tick, so it gives half as much.
@@ -185,7 +185,7 @@ TEST(EnergyAccount, AForceThatGoesAlongWithTheHandInEachOtherTickIsFoundOut) {
     found = book.step(x += 1e-3 * way, i % 2 == 0 ? 8 * way : 0);
   }
   EXPECT_TRUE(found);
-  EXPECT_LT(given, 2 * FieldBook::kForce * EnergyAccount::kWay);
+  EXPECT_LT(given, 2 * FieldBook::kForce * EnergyAccount::kDistance);
 }
 
 /// A program that sets a parameter in each tick may make a surface give as much, and no more.
