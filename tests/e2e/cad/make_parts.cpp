@@ -277,6 +277,7 @@ int main(int argc, char** argv) {
   step(BRepPrimAPI_MakeCone(10, 0, 20).Shape(), "cone");
   step(BRepPrimAPI_MakeCylinder(10, 20, 1.5 * std::numbers::pi).Shape(), "three_quarters");
   step(BRepPrimAPI_MakeTorus(20, 5).Shape(), "torus");
+  step(BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(10, 500), BRepPrimAPI_MakeCylinder(9.99, 500)).Shape(), "foil");
   step(BRepAlgoAPI_Cut(box(0, 0, 0, 40, 40, 10), box(10, 10, -1, 40, 40, 12)).Shape(), "bracket");
   step(BRepAlgoAPI_Fuse(box(0, 0, 0, 20, 10, 10), box(20, 0, 0, 20, 10, 10)).Shape(), "coplanar");
   step(plateWithHoles(), "plate");
