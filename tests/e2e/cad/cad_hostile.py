@@ -91,6 +91,8 @@ if not os.environ.get("HAPTICD_SANITIZE"):  # a sanitizer needs an address space
 read_with("edges that end beside their vertex are told", "the outlines of 3 faces are off, that of face 0 most, by 2 mm: an edge does not end at its vertex",
           join("vertex_off.brep"))
 told("a BREP file in binary form is told so", "in binary form", put("binary.brep", b"\nOpen CASCADE Topology V4, (c) Open Cascade\nLocations 0\n" + bytes(100)))
+told("a BREP file with a face of triangles alone is told so", "faces of triangles without a surface (1 of 6)",
+     put("bare.brep", re.sub(rb"(Fa\n0\s+\S+\s+)\d+", rb"\g<1>0", brep, count=1)))
 read_with("FreeCAD's ending of BREP is read", "nothing was lost", put("freecad.brp", brep))
 read_with("a mark of UTF-8 before STEP is passed over", "nothing was lost", put("mark.step", b"\xef\xbb\xbf" + step))
 read_with("an unknown prefix of a unit is told", "check the size of the part", put("prefix.step", step.replace(b".MILLI.", b".MILLY.")))

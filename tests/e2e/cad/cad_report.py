@@ -141,6 +141,11 @@ def open_bodies():
     check("a closed body is not open", "felt from both sides" not in out, out)
 
 
+def thin_walls():
+    out, _, _ = told("foil.step")
+    check("the sides of a tube of 500 mm with a wall of 0.01 mm are right", "faces tried" not in out and "nothing was lost" in out, out)
+
+
 def counts():
     _, _, info = told("trough.brep")
     check("one face is one face", "open, 1 face, 4 edges" in info, info)
@@ -199,6 +204,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, names, written_without_a_name, axes, crossed_axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
+for part_of_the_test in (units, names, written_without_a_name, axes, crossed_axes, sizes, full_disks, sizes_in_scenes, open_bodies, thin_walls, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()

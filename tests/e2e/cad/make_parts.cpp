@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Writes CAD files whose distances have closed forms, for cad_truth.py.
-///   make_parts FOLDER
+///   make_parts FOLDER             all of them
+///   make_parts FOLDER ROWS        plate.step alone, with ROWS x ROWS holes
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -48,7 +49,9 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <gp_Sphere.hxx>
 #include <numbers>
 #include <string>
@@ -106,11 +109,11 @@ Handle(Geom_Circle) circle(double x, double y, double radius) {
   return new Geom_Circle(gp_Ax2(gp_Pnt(x, y, 0), gp_Dir(0, 0, 1)), radius);
 }
 
-/// A plate of 100 mm, 5 mm thick below z = 5; 58 x 57 holes (in tests/run long, else 24 x 23) of 0.6 mm, 1.6 mm apart:
-/// what is quadratic in the loops of a face takes minutes here.
-TopoDS_Shape plateWithHoles() {
-  BRepBuilderAPI_MakeFace face(gp_Pln(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 0, 100, 0, 100);
-  const int columns = hapticd::support::kLong ? 58 : 24, rows = columns - 1;
+/// A plate of 100 mm or what the holes need, 5 mm thick below z = 5; holes of 0.6 mm, 1.6 mm apart: what is quadratic
+/// in the loops of a face takes minutes here.
+TopoDS_Shape plateWithHoles(int columns, int rows) {
+  const double size = std::max(100.0, 1.6 * columns + 8);
+  BRepBuilderAPI_MakeFace face(gp_Pln(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 0, size, 0, size);
   for (int i = 0; i < columns; ++i)
     for (int j = 0; j < rows; ++j) face.Add(TopoDS::Wire(loop(circle(4 + 1.6 * i, 4 + 1.6 * j, 0.6)).Reversed()));
   return BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, 5)).Shape();
@@ -255,12 +258,7 @@ void assembly() {
        "apart");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc != 2) return 2;
-  folder = argv[1];
-  Message::DefaultMessenger()->ChangePrinters().Clear();
+void solids() {
   const TopoDS_Shape block = box(-20, -15, -10, 40, 30, 20), cylinder = BRepPrimAPI_MakeCylinder(10, 20).Shape();
   step(block, "box");
   iges(block, "box");
@@ -277,10 +275,15 @@ int main(int argc, char** argv) {
   step(BRepPrimAPI_MakeCone(10, 0, 20).Shape(), "cone");
   step(BRepPrimAPI_MakeCylinder(10, 20, 1.5 * std::numbers::pi).Shape(), "three_quarters");
   step(BRepPrimAPI_MakeTorus(20, 5).Shape(), "torus");
+  step(BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(10, 500), BRepPrimAPI_MakeCylinder(9.99, 500)).Shape(), "foil");
   step(BRepAlgoAPI_Cut(box(0, 0, 0, 40, 40, 10), box(10, 10, -1, 40, 40, 12)).Shape(), "bracket");
   step(BRepAlgoAPI_Fuse(box(0, 0, 0, 20, 10, 10), box(20, 0, 0, 20, 10, 10)).Shape(), "coplanar");
-  step(plateWithHoles(), "plate");
+  const int columns = hapticd::support::kLong ? 58 : 24;
+  step(plateWithHoles(columns, columns - 1), "plate");
   step(plateWithSplineHole(), "spline_hole");
+}
+
+void sheetsAndOddOnes() {
   brep(trough(), "trough");
   gp_Trsf aside;
   aside.SetTranslation({100, 0, 0});
@@ -296,6 +299,21 @@ int main(int argc, char** argv) {
   brep(solidOf(twiceOneCap()), "no_volume");
   iges(pinOnRim(), "pin_on_rim");
   brep(splineQuarter(), "spline_quarter");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2 && argc != 3) return 2;
+  folder = argv[1];
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  if (argc == 3) {
+    const int rows = std::atoi(argv[2]);
+    step(plateWithHoles(rows, rows), "plate");
+    return failures;
+  }
+  solids();
+  sheetsAndOddOnes();
   assembly();
   return failures;
 }

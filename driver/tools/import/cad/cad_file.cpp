@@ -3,12 +3,14 @@
 
 #include <BRepTools_ShapeSet.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_BasicEditor.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <XCAFApp_Application.hxx>
@@ -256,6 +258,16 @@ void refuseBinary(const std::string& file) {
         "STEP");
 }
 
+/// Fails if a face has triangles and no surface, because Open CASCADE's repairs would crash.
+void refuseBareTriangles(const TopoDS_Shape& shape) {
+  std::size_t faces = 0, bare = 0;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next(), ++faces)
+    bare += BRep_Tool::Surface(TopoDS::Face(at.Current())).IsNull() ? 1 : 0;
+  if (bare > 0)
+    throw CadError("it has faces of triangles without a surface (" + std::to_string(bare) + " of " +
+                   std::to_string(faces) + "); expected surfaces: export these, or write an STL, OBJ or PLY file");
+}
+
 void readBrep(const std::string& file, CadFile& cad) {
   refuseBinary(file);
   refuseNoNumbers(file);
@@ -271,6 +283,7 @@ void readBrep(const std::string& file, CadFile& cad) {
         "it ends too early, or has words where numbers belong");
   }
   if (shape.IsNull()) throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
+  refuseBareTriangles(shape);
   assumeUnit(cad);
   Node node;
   node.name = node.body_name = std::filesystem::path(file).stem().string();

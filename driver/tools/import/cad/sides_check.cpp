@@ -21,6 +21,17 @@
 namespace hapticd::cad {
 namespace {
 
+/// Returns 1 if the outside is in front of a point and the inside behind, -1 if not, 0 if the classifier cannot say.
+int lookBeside(BRepClass3d_SolidClassifier& solid, const gp_Pnt& p, const gp_Vec& normal, double far) {
+  bool right = true;
+  for (const int side : {1, -1}) {
+    solid.Perform(p.Translated(normal * (side * far)), 1e-9);
+    if (solid.State() != TopAbs_IN && solid.State() != TopAbs_OUT) return 0;
+    right = right && (solid.State() == TopAbs_OUT) == (side > 0);
+  }
+  return right ? 1 : -1;
+}
+
 /// Returns 1 if the outside is in front of the face and the inside behind it, -1 if not, 0 if this cannot be decided.
 int judge(BRepClass3d_SolidClassifier& solid, const TopoDS_Face& face, double step) {
   gp_Pnt p;
@@ -30,14 +41,15 @@ int judge(BRepClass3d_SolidClassifier& solid, const TopoDS_Face& face, double st
   gp_Vec normal = along_u.Crossed(along_v);
   if (!(normal.Magnitude() > 1e-12)) return 0;
   normal = normal.Normalized() * (face.Orientation() == TopAbs_REVERSED ? -1 : 1);
-  const double far = std::max(step, 5 * BRep_Tool::Tolerance(face));
-  bool right = true;
-  for (const int side : {1, -1}) {
-    solid.Perform(p.Translated(normal * (side * far)), 1e-9);
-    if (solid.State() != TopAbs_IN && solid.State() != TopAbs_OUT) return 0;
-    right = right && (solid.State() == TopAbs_OUT) == (side > 0);
+  // A wall that is thinner than the step has its other side's outside behind it, so a short step is tried as well.
+  int found = 0;
+  for (const double share_of_step : {1.0, 0.01}) {
+    const double far = std::max(share_of_step * step, 5 * BRep_Tool::Tolerance(face));
+    const int now = lookBeside(solid, p, normal, far);
+    if (now != 0) found = now;
+    if (now > 0) break;
   }
-  return right ? 1 : -1;
+  return found;
 }
 
 }  // namespace
