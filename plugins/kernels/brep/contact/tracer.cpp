@@ -28,7 +28,7 @@ class Tracer::Faces {
     const bool on = how == contact::Followed::kOn && side * foot.behind > foot.aside;
     if (on || how == contact::Followed::kLost) [[likely]]
       return how;
-    return goOnBehindNext(side, foot) ? contact::Followed::kOn : how;
+    return goOnBehindNext(side, foot) || goOnFlushBody(side, foot) ? contact::Followed::kOn : how;
   }
   Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
   bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
@@ -46,6 +46,13 @@ class Tracer::Faces {
       holdNearest();
       foot = nearest();
     }
+    foot.begins = true;
+    return true;
+  }
+
+  /// Moves a held foot that has come to an edge on to another body, if that one is flush. Else returns false.
+  [[gnu::cold, gnu::noinline]] bool goOnFlushBody(double side, Foot& foot) noexcept {
+    if (tracer_.model().placements().size() < 2 || !tracer_.goOnFlush(side, p_, foot)) return false;
     foot.begins = true;
     return true;
   }
@@ -196,6 +203,10 @@ Foot Tracer::step(const Vector3d& p, const contact::ContactRule& rule, const Sea
   if (changed && mayBeThroughGap((p - last_p_).norm())) contact_.popThrough(p);
   last_p_ = p;
   has_last_ = true;
+  if (contact_.held() && !foot.on_edge)
+    last_normal_ = foot.normal, last_foot_ = foot.point;
+  else if (!contact_.held() || foot.begins)
+    last_normal_.setZero();
   count(foot);
   return foot;
 }
