@@ -17,17 +17,16 @@ using Eigen::Vector3d;
 /// contact, if there is no such face.
 bool Tracer::goOnFlush(double side, const Vector3d& p, Foot& foot) noexcept {
   constexpr int kMostBodies = 8;
-  constexpr double kStep = 0.1;    // a step is flush if it is lower than this share of the way of the tick
-  constexpr double kAhead = 1e-3;  // share of the way of the tick
-  constexpr double kAlong = 0.8;   // least cosine between the normals of the two faces
+  constexpr double kStep = 0.25;    // a step is flush if it is lower than this share of the way of the tick
+  constexpr double kBeside = 1e-3;  // share of the way of the tick: on the edge itself, rounding decides on the face
+  constexpr double kAlong = 0.8;    // least cosine between the normals of the two faces
   const Held before = held_;
   if (!model().placements()[before.place].solid || !(last_normal_.squaredNorm() > 0)) return false;
   const double depth = last_normal_.dot(last_foot_ - p);
   if (!(depth > 0)) return false;  // it came out in front of the face
-  // A little ahead, because beside the edge itself rounding decides on the face.
-  const Vector3d ahead = p + kAhead * (p - last_p_),
-                 on = ahead + depth * last_normal_;  // where the surface would go on
-  const double flush = std::max(model().part().tolerance, kStep * (p - last_p_).norm());
+  const Vector3d way = p - last_p_, beside = p + kBeside * way;
+  const Vector3d on = p + way + depth * last_normal_;  // where the surface would go on, a tick ahead
+  const double flush = std::max(model().part().tolerance, kStep * way.norm());
   std::array<std::uint32_t, kMostBodies> around;
   const int count = std::min(search_.around(p, around.data(), kMostBodies), kMostBodies);
   for (int i = 0; i < count; ++i) {
@@ -37,7 +36,7 @@ bool Tracer::goOnFlush(double side, const Vector3d& p, Foot& foot) noexcept {
     if (!found.found() || !(found.distance() <= flush)) continue;
     const Held next = heldAt(found);
     if (!(side * describe(model(), place, next.hit, next.face, on).normal.dot(last_normal_) > kAlong)) continue;
-    for (const Vector3d& at : {p, ahead}) {
+    for (const Vector3d& at : {p, beside}) {
       held_ = next;
       if (follow(side, at, foot) == Followed::kOn && contact::seenFrom(foot, side).depth > 0) return true;
     }

@@ -50,11 +50,10 @@ class Tracer::Faces {
     return true;
   }
 
-  /// Moves a held foot that has come to an edge on to another body, if that one is flush. Else returns false.
+  /// Moves a held foot that has come to an edge on to another body, if that one is flush. Else returns false. For
+  /// friction, the contact does not begin anew.
   [[gnu::cold, gnu::noinline]] bool goOnFlushBody(double side, Foot& foot) noexcept {
-    if (tracer_.model().placements().size() < 2 || !tracer_.goOnFlush(side, p_, foot)) return false;
-    foot.begins = true;
-    return true;
+    return tracer_.model().placements().size() > 1 && tracer_.goOnFlush(side, p_, foot);
   }
 
   /// True if the probe, which has come out in front of the held face or over an edge of it, is behind the next one, as
