@@ -28,7 +28,7 @@ class Tracer::Faces {
     const bool on = how == contact::Followed::kOn && side * foot.behind > foot.aside;
     if (on || how == contact::Followed::kLost) [[likely]]
       return how;
-    return goOnBehindNext(side, foot) ? contact::Followed::kOn : how;
+    return goOnBehindNext(side, foot) || goOnFlushBody(side, foot) ? contact::Followed::kOn : how;
   }
   Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
   bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
@@ -48,6 +48,12 @@ class Tracer::Faces {
     }
     foot.begins = true;
     return true;
+  }
+
+  /// Moves a held foot that has come to an edge on to another body, if that one is flush. Else returns false. For
+  /// friction, the contact does not begin anew.
+  [[gnu::cold, gnu::noinline]] bool goOnFlushBody(double side, Foot& foot) noexcept {
+    return tracer_.model().placements().size() > 1 && tracer_.goOnFlush(side, p_, foot);
   }
 
   /// True if the probe, which has come out in front of the held face or over an edge of it, is behind the next one, as
@@ -196,6 +202,10 @@ Foot Tracer::step(const Vector3d& p, const contact::ContactRule& rule, const Sea
   if (changed && mayBeThroughGap((p - last_p_).norm())) contact_.popThrough(p);
   last_p_ = p;
   has_last_ = true;
+  if (contact_.held() && !foot.on_edge)
+    last_normal_ = foot.normal, last_foot_ = foot.point;
+  else if (!contact_.held() || foot.begins)
+    last_normal_.setZero();
   count(foot);
   return foot;
 }

@@ -57,6 +57,7 @@ class Tracer {
   void slideAround(std::uint32_t vertex, const Eigen::Vector3d& p, Held& next) noexcept;
   bool slideAside(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
+  bool goOnFlush(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
   void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;
   bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
@@ -78,6 +79,8 @@ class Tracer {
   std::uint32_t last_place_ = kNone;  ///< placement of nearest_ in the last tick; kNone if that was not certain
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
+  Eigen::Vector3d last_foot_{0, 0, 0};    ///< of the contact that is held, when it was last within a face
+  Eigen::Vector3d last_normal_{0, 0, 0};  ///< there, toward the side that is felt; 0: unknown
   bool has_last_ = false;
   TraceCounts counts_;
 };
