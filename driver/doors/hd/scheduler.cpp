@@ -58,11 +58,10 @@ unsigned listeningTime(bool real_time, double rate) {
 void reportRates(double wanted, double daemon) {
   constexpr int kShown = 6;
   char text[256];
-  int at =
-      std::snprintf(text, sizeof text,
-                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in the ticks of the daemon, of %.0f Hz\n"
-                    "  fix: use one of the rates %.0f",
-                    wanted, daemon, daemon);
+  int at = std::snprintf(text, sizeof text,
+                         "hdSetSchedulerRate(%.0f) is refused: callbacks run in the ticks of the daemon, of %.0f Hz\n"
+                         "  fix: use one of the rates %.0f",
+                         wanted, daemon, daemon);
   for (int every = 2; every <= kShown && at > 0 && static_cast<size_t>(at) < sizeof text; ++every)
     at += std::snprintf(text + at, sizeof text - static_cast<size_t>(at), ", %.0f", std::round(daemon / every));
   hintOnce(keptForever(std::string(text) +

@@ -13,8 +13,8 @@ namespace hapticd::brep {
 struct OpenBorder {
   std::size_t edges = 0;
   std::uint32_t body = 0;
-  Eigen::AlignedBox3d
-      box;  ///< [m] around the edges, where the only instance of the body is; in the body's frame if it has more
+  /// [m] Around the edges, where the only instance of the body is; in the body's frame if it has more.
+  Eigen::AlignedBox3d box;
 };
 
 /// [main] Returns the borders of all bodies, the largest of each body first.
