@@ -196,6 +196,12 @@ std::string instanceLines(const FirstScene& first, const ModelFacts& facts) {
       facts.instances.size(), yamlText(facts.instances.front()), shellWord(fileName(first.model)));
 }
 
+/// A small ball about the tip for solids that may touch each other; "" for a single one, and for what is open.
+std::string ballLine(const FirstScene& first, const ModelFacts& facts) {
+  if (first.soft || facts.open || facts.instances.size() < 2) return "";
+  return parameterLine("tip_radius: 0.0002", "m; where parts touch, a ball is stopped by each, a point by one of them");
+}
+
 std::string modelLines(const FirstScene& first, const ModelFacts& facts) {
   const PressPlace& place = facts.place;
   std::string text = fmt::format(
@@ -209,7 +215,7 @@ std::string modelLines(const FirstScene& first, const ModelFacts& facts) {
   text += parameterLine("geometry: " + yamlText(pathFrom(first.scene, first.model)), "paths are relative to this file");
   if (!first.soft && (facts.open || !place.faces_hand))
     text += parameterLine("sides: both", "an open shell, felt from both sides");
-  return text + feelLines(first, facts.stiffness) + instanceLines(first, facts);
+  return text + feelLines(first, facts.stiffness) + ballLine(first, facts) + instanceLines(first, facts);
 }
 
 std::string textOf(const FirstScene& first, const ModelFacts& facts) {

@@ -219,6 +219,7 @@ def cad():
     made(join("roof.brep"), "roof.hpart")  # a crease: the hand presses what is drawn
     text, _ = made(join("assembly.step"), "assembly.hpart")
     name = re.search(r"# (instance: \S+)", text)
+    check("a small ball is stopped by each part of an assembly", "tip_radius: 0.0002" in text, text)
     check("an assembly names its parts", name and "the whole assembly of 2 parts" in text and text.count("plugin:") == 1, text)
     alone = write(folder, "alone.yaml", text.replace("# " + name[1], name[1]))
     check("the line makes a scene of one of them", "no instance" not in run("check", alone).stdout and run("check", alone).returncode == 0)

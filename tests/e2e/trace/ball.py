@@ -7,9 +7,10 @@ import math
 import os
 import random
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import check, finish, program, write
 from traced import STIFFNESS, block, quad, trace
 
 HAPTICD = sys.argv[1]
@@ -117,6 +118,29 @@ def states():
     check("the depth outside is minus the gap", abs(rows[0]["depth"] + 0.007) < 1e-12, rows[0]["depth"])
 
 
+def boxes(*corners):
+    """The text of an OBJ file with a box from each pair of corners."""
+    faces, text = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)), ""
+    for number, (low, high) in enumerate(corners):
+        text += f"o box{number}\n" + "".join(f"v {x} {y} {z}\n" for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2]))
+        text += "".join("f " + " ".join(str(8 * number + i + 1) for i in face) + "\n" for face in faces)
+    return text
+
+
+def bodies_that_touch():
+    """A block stands on a plate. A point that presses on the plate is below the block, a small ball rests against both."""
+    points = line((0, 0, 0.005), (0, 0, -0.001)) + line((0, 0, -0.001), (0.03, 0, -0.001), 1000)
+    radius = 2e-4
+    with tempfile.TemporaryDirectory() as folder:
+        write(folder, "two.obj", boxes(((-0.05, -0.05, -0.05), (0.05, 0.05, 0)), ((0.02, -0.05, 0), (0.05, 0.05, 0.03))))
+        part = os.path.join(folder, "two.hpart")
+        code, _, err = program(HAPTICD)("import", os.path.join(folder, "two.obj"), "--scale", "1", "-o", part)
+        check("two boxes are a part", code == 0, err)
+        rows = roll([], points, {"geometry": part, "tip_radius": radius})
+    wanted = [[-STIFFNESS * max(x - 0.02 + radius, 0), 0, STIFFNESS * max(radius - z, 0)] for x, _, z in points]
+    check("a small ball on a plate is stopped by the block that stands on it", worst(rows, wanted) < 1e-3, worst(rows, wanted))
+
+
 def search():
     points = line((0, 0, 0.06), (0, 0, 0.01), 1000)
     rows = roll(BLOCK, points, {"tip_radius": 0.05}, servo={"activation_radius": 0.01, "hysteresis": 0.005})
@@ -132,6 +156,7 @@ def search():
 convex()
 concave()
 groove()
+bodies_that_touch()
 begins_in_a_slot()
 shells()
 states()
