@@ -45,6 +45,9 @@ class CartesianArm : public Device {
   Exchange exchange_;
 
  private:
+  CartesianArm() = default;
+  friend Arm;
+
   /// The orientation is always the identity: the handle can turn, but its orientation is not measured.
   static hsp_status forward(const hdv_device*, const double* q, double position[3],
                             double orientation[4]) noexcept HSP_RT {
