@@ -15,7 +15,7 @@ inline std::string shellWord(const std::string& name) {
   const auto plain = [&](unsigned char c) {
     return std::isalnum(c) != 0 || c >= 0x80 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
   };
-  const std::string word = name.starts_with('-') ? "./" + name : name;
+  std::string word = name.starts_with('-') ? "./" + name : name;
   if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
