@@ -115,7 +115,8 @@ Json describe(const Part& part, std::size_t bytes) {
 void addPlaces(Json& info, const brep::Model& model) {
   for (std::uint32_t i = 0; i < model.placements().size(); ++i) {
     const Eigen::AlignedBox3d box = brep::tightBounds(model, i);
-    const Eigen::Vector3d low = box.min(), size = box.sizes(), middle = box.center();
+    const Eigen::Vector3d& low = box.min();
+    const Eigen::Vector3d size = box.sizes(), middle = box.center();
     Json& instance = info["instances"][model.placements()[i].instance];
     instance["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
     instance["middle_m"] = {middle.x(), middle.y(), middle.z()};
@@ -127,7 +128,8 @@ void addMeasures(Json& info, Part part) {
   try {
     const brep::Model model(std::move(part));
     const Eigen::AlignedBox3d box = brep::tightBounds(model);
-    const Eigen::Vector3d low = box.min(), size = box.sizes();
+    const Eigen::Vector3d& low = box.min();
+    const Eigen::Vector3d size = box.sizes();
     info["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
     const Eigen::Vector3d middle = box.center();
     info["middle_m"] = {middle.x(), middle.y(), middle.z()};

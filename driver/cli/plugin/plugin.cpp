@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "cli/support/class_info.hpp"
 #include "cli/support/command.hpp"
@@ -16,12 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::string kInQuarantine = "IN QUARANTINE: ";
+constexpr std::string_view kInQuarantine = "IN QUARANTINE: ";
 
 std::string noteOf(const watch::QuarantinedPlugin& entry) {
   const auto found = catalog().shape(entry.plugin);
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))
-    return kInQuarantine + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
+    return std::string(kInQuarantine) + entry.reason + "; runs leave it out until: hapticd plugin clear " +
+           entry.plugin;
   return "NOTE: " + entry.fileForPeople() + " ended a run by " + entry.reason +
          "; the file has changed since, or is another one, so it runs again; "
          "once it is repaired: hapticd plugin clear " +

@@ -201,12 +201,12 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
 }
 
 /// Under compliance control, shapes meet the virtual mass and not the arm that follows it.
-void Arm::takeVirtualProbe() noexcept HSP_RT {
-  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // now driven by force, which can be faded
-  if (!admittance_->started() && !admittance_->start(sample_.position)) return;
-  probe_.position = R_world_device_ * admittance_->position() + origin_world_;
-  probe_.orientation = q_world_device_ * quaternionOf(admittance_->orientation().data());
-  probe_.velocity = R_world_device_ * admittance_->velocity();
+void Arm::takeVirtualProbe(Admittance& mass) noexcept HSP_RT {
+  if (limiter_.fault() != Fault::kNone) return mass.stop();  // now driven by force, which can be faded
+  if (!mass.started() && !mass.start(sample_.position)) return;
+  probe_.position = R_world_device_ * mass.position() + origin_world_;
+  probe_.orientation = q_world_device_ * quaternionOf(mass.orientation().data());
+  probe_.velocity = R_world_device_ * mass.velocity();
 }
 
 /// Compliance control: `force` of the contacts and the push of the hand move the virtual mass, and the arm follows the

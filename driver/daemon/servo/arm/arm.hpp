@@ -148,7 +148,7 @@ class Arm {
   void watchJump() noexcept HSP_RT;
   double trustIn(Nanoseconds age) const noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT;
-  void takeVirtualProbe() noexcept HSP_RT;
+  void takeVirtualProbe(Admittance& mass) noexcept HSP_RT;
   /// Returns the torques that carry the arm's own weight in this tick: zeros if the module does not know them, or if
   /// its answer is not finite.
   Weight::Torques weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT;

@@ -54,7 +54,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
     return probe_;
   }
   watchJump();
-  if (admittance_) takeVirtualProbe();
+  if (admittance_) takeVirtualProbe(*admittance_);
   // A device slower than the servo repeats its sample. The estimator gets only new samples: a repeated one would look
   // like rest, and the next new one like several times the speed of the hand. A virtual mass moves in every tick.
   if (velocity_ && (fresh_ || admittance_)) {
