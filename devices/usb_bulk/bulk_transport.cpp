@@ -173,7 +173,7 @@ class BulkTransport final : public Transport {
       return;
     }
     const std::string serial = text(about.iSerialNumber);
-    others += (others.empty() ? "" : ", ") + textOf(serial, port);
+    others += (others.empty() ? "" : ", ") + factsOf(serial, port);
     if ((!address.serial.empty() && serial != address.serial) || (!address.port.empty() && port != address.port)) {
       libusb_close(handle_);
       handle_ = nullptr;

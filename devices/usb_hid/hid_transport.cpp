@@ -63,7 +63,7 @@ class HidTransport final : public Transport {
     for (hid_device_info* at = all; at != nullptr && handle_ == nullptr; at = at->next) {
       const std::string serial = narrow(at->serial_number);
       const std::string port = portOf(at->path);
-      others += (others.empty() ? "" : ", ") + textOf(serial, port);
+      others += (others.empty() ? "" : ", ") + factsOf(serial, port);
       if (!address.serial.empty() && address.serial != serial) continue;
       if (!address.port.empty() && address.port != port) continue;
       if (address.interface >= 0 && at->interface_number >= 0 && at->interface_number != address.interface) continue;

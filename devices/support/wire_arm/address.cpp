@@ -20,7 +20,7 @@ std::string textOf(const Address& address) {
          (address.port.empty() ? "" : " at port " + address.port);
 }
 
-std::string textOf(const std::string& serial, const std::string& port) {
+std::string factsOf(const std::string& serial, const std::string& port) {
   return (serial.empty() ? "no serial number" : "serial " + serial) + (port.empty() ? "" : " at port " + port);
 }
 
@@ -30,8 +30,8 @@ std::string notOpened(std::string_view bus, const Address& address, const std::s
   const std::string who = std::string(bus) + " device " + textOf(address);
   if (!refused.empty())
     return who + " " + refused + kOff +
-           "install the udev rules (udev/70-hapticd.rules), join the group haptic, plug it in again; hapticd doctor "
-           "says what is missing";
+           "install the udev rules (udev/70-hapticd.rules), join the group haptic, plug it in again; "
+           "hapticd doctor says what is missing";
   if (!others.empty())
     return who + " not found; devices with this id: " + others + kOff +
            "correct usb.serial or usb.port in the device file";

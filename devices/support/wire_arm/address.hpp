@@ -20,7 +20,7 @@ struct Address {
 std::string textOf(const Address& address);
 
 /// [any] Returns the facts by which devices with one id are told apart, such as "serial B2 at port 1-2.3".
-std::string textOf(const std::string& serial, const std::string& port);
+std::string factsOf(const std::string& serial, const std::string& port);
 
 /// [any] Returns why a device was not opened, and what to do. @param bus "USB" or "HID" @param refused what is wrong
 /// with the device itself, such as "is in use"; "" if it was not found @param others the devices with its id, or ""

@@ -44,8 +44,8 @@ struct ParameterTable {
         F::text("usb.serial", &T::serial, "",
                 "Serial number of the device. Without it, the first such device that is free is used."),
         F::text("usb.port", &T::port, "",
-                "Port at which the device is plugged in, such as 1-2.3, as hapticd device list prints it. It "
-                "distinguishes two devices without serial numbers."),
+                "Port at which the device is plugged in, such as 1-2.3, as hapticd device list prints it. "
+                "It distinguishes two devices without serial numbers."),
         F::integer("usb.interface", &T::interface, "", -1, 255, -1,
                    "Number of the USB interface; -1 means any interface for HID, and interface 0 for bulk."),
         F::choice(

@@ -48,8 +48,9 @@ void printBuses(const std::vector<BusDevice>& found) {
                 device.module.empty() ? "" : ", module ", device.module.c_str());
     if (!device.module.empty() && !device.may_open)
       std::printf(
-          "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug the device in "
-          "again; hapticd doctor says more\n",
+          "    you may not open %s\n"
+          "    fix: install the udev rules (udev/70-hapticd.rules) and plug the device in again; "
+          "hapticd doctor says more\n",
           device.node.c_str());
   }
   if (found.empty())
@@ -114,9 +115,9 @@ void addDeviceList(const Command& app, int& exit_code) {
   command.addOption("files", *files, "device files (YAML) whose arms on USB are looked for as well");
   command.addFlag("--json", *json, "print JSON");
   command.footer(
-      "Two arms of one kind differ by their serial numbers (usb.serial in a device file) or, without these, by the "
-      "port behind \"usb\", such as 1-2.3 (usb.port).\n\nExamples:\n  hapticd device list\n  hapticd device list "
-      "my-arm.yaml");
+      "Two arms of one kind differ by their serial numbers (usb.serial in a device file) or, without these, "
+      "by the port behind \"usb\", such as 1-2.3 (usb.port).\n\n"
+      "Examples:\n  hapticd device list\n  hapticd device list my-arm.yaml");
   command.callback([files, json, &exit_code] { exit_code = listWith(*files, *json); });
 }
 
