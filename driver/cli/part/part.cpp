@@ -126,7 +126,9 @@ void addPlaces(Json& info, const brep::Model& model) {
 /// Adds what is not in the file: the box around all bodies in their places, and the notes that loading the part gives.
 void addMeasures(Json& info, Part part) {
   try {
-    const brep::Model model(std::move(part));
+    brep::ModelOptions options;
+    options.empty_balls = false;
+    const brep::Model model(std::move(part), options);
     const Eigen::AlignedBox3d box = brep::tightBounds(model);
     const Eigen::Vector3d& low = box.min();
     const Eigen::Vector3d size = box.sizes();

@@ -12,7 +12,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -21,6 +20,7 @@
 #include "kernels/part/file.hpp"
 #include "occt.hpp"
 #include "peers.hpp"
+#include "unit/plugins/kernels/brep/sample_meshes.hpp"
 #include "unit/plugins/kernels/brep/sample_solids.hpp"
 
 namespace hapticd::bench {
@@ -69,44 +69,6 @@ double clockAlone() {
 double ratioWithoutClock(double theirs, double ours) {
   constexpr double kLeast = 1;
   return std::max(theirs - clockAlone(), kLeast) / std::max(ours - clockAlone(), kLeast);
-}
-
-/// Returns a closed ball with a radius of 50 mm and with bumps. @param triangles approximate number of triangles
-Part bumpyBall(int triangles) {
-  Part part;
-  const int n = static_cast<int>(std::sqrt(triangles / 4.0)), m = 2 * n;
-  const auto at = [&](int i, int j) {
-    if (i == 0) return 0;
-    if (i == n) return 1;
-    return 2 + (i - 1) * m + j % m;
-  };
-  part.points = {{0, 0, 0.05}, {0, 0, -0.05}};
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < m; ++j) {
-      const double a = std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / m;
-      const double r = 0.05 + 0.003 * std::sin(5 * a) * std::cos(7 * b) * std::sin(a) * std::sin(a);
-      part.points.push_back({r * std::sin(a) * std::cos(b), r * std::sin(a) * std::sin(b), r * std::cos(a)});
-    }
-  const auto add = [&](int a, int b, int c) {
-    brep::Triangle t;
-    t.corner = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)};
-    part.triangles.push_back(t);
-  };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < m; ++j) {
-      if (i < n - 1) add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
-      if (i > 0) add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
-    }
-  brep::Body body;
-  body.kind = brep::BodyKind::kMesh;
-  body.flags = brep::kClosed;
-  body.point_count = static_cast<std::uint32_t>(part.points.size());
-  body.triangle_count = static_cast<std::uint32_t>(part.triangles.size());
-  part.bodies.push_back(body);
-  brep::Instance instance;
-  instance.body = 0;
-  part.instances.push_back(instance);
-  return part;
 }
 
 constexpr std::size_t kStroke = 1000;  ///< ticks of one walk over the surface
@@ -350,8 +312,8 @@ void measure(Part part, const char* name, const char* source = nullptr) {
 int main(int count, char** files) {
   using namespace hapticd;
   if (count == 2 && std::string(files[1]) == "--balls") {
-    bench::measure(bench::bumpyBall(100000), "bumpy ball");
-    bench::measure(bench::bumpyBall(1000000), "bumpy ball");
+    bench::measure(brep::samples::bumpyBall(100000), "bumpy ball");
+    bench::measure(brep::samples::bumpyBall(1000000), "bumpy ball");
     return 0;
   }
   if (count < 2) {
@@ -359,8 +321,8 @@ int main(int count, char** files) {
     bench::measure(brep::samples::torus(20, 6), "torus");
     bench::measure(brep::samples::plate(58, 57, 1, 3, 2), "plate with 3306 holes");
     bench::measure(brep::samples::plate(100, 100, 1, 3, 2), "plate with 10,000 holes");
-    bench::measure(bench::bumpyBall(100000), "bumpy ball");
-    bench::measure(bench::bumpyBall(1000000), "bumpy ball");
+    bench::measure(brep::samples::bumpyBall(100000), "bumpy ball");
+    bench::measure(brep::samples::bumpyBall(1000000), "bumpy ball");
   }
   if (count > 2 && std::string(files[1]) == "--edges") {
     for (int i = 2; i < count; ++i) bench::measureEdgeSteps(brep::Model(bench::readFile(files[i])));

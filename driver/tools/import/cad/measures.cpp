@@ -23,7 +23,9 @@ std::string lineOf(const std::string& name, const std::vector<brep::OpenBorder>&
 Measures measured(const brep::Part& part) {
   Measures measures;
   try {
-    const brep::Model model{brep::Part(part)};
+    brep::ModelOptions options;
+    options.empty_balls = false;
+    const brep::Model model(brep::Part(part), options);
     measures.box = brep::tightBounds(model);
     measures.notes = model.warnings();
   } catch (const std::invalid_argument& error) {

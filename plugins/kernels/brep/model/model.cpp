@@ -39,6 +39,7 @@ class ModelBuilder {
     model_.face_roots_.assign(part_.faces.size(), BodyTree::kNoRoot);
     for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) buildTree(b);
     placeBodies();
+    touchWithBalls();
     warn();
     dropSplineNumbers();
   }
@@ -275,6 +276,12 @@ class ModelBuilder {
     });
   }
 
+  void touchWithBalls() {
+    if (!options_.empty_balls || model_.placements_.size() > 1) return;
+    const BodyTree& body = model_.bodies_[model_.placements_[0].body];
+    if (!body.discs.empty()) model_.empty_balls_ = findEmptyBalls(part_, body);
+  }
+
   void placeBodies() {
     std::vector<AlignedBox3d> boxes;
     for (const Placement& place : model_.placements_) {
@@ -356,7 +363,8 @@ std::size_t Model::bytes() const noexcept {
   add(part_.surfaces), add(part_.curves3), add(part_.curves2), add(part_.vertices), add(part_.edges);
   add(part_.coedges), add(part_.loops), add(part_.faces), add(part_.points), add(part_.triangles);
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
-  add(smooth_corner_), add(smooth_normals_), add(placements_), add(recognised_), add(first_edge_at_), add(edges_at_);
+  add(smooth_corner_), add(smooth_normals_), add(empty_balls_), add(placements_), add(recognised_), add(first_edge_at_),
+      add(edges_at_);
   for (const RecognisedEdge& edge : recognised_) add(edge.stops), add(edge.parameters);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
   add(face_roots_), add(edge_slots_);

@@ -12,6 +12,7 @@
 
 #include "kernels/brep/elements/elements.hpp"
 #include "kernels/brep/elements/recognised_edges.hpp"
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/brep/tree/box_tree.hpp"
 #include "kernels/brep/tree/row_box.hpp"
 #include "kernels/brep/tree/row_disc.hpp"
@@ -23,6 +24,9 @@ struct ModelOptions {
   /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. The instance keeps
   /// the pose that it has in the part.
   std::string instance;
+  /// Find the empty balls of a mesh, so that a probe can be followed over it quickly. It takes some microseconds a
+  /// triangle.
+  bool empty_balls = true;
 };
 
 /// A body at its pose in the model.
@@ -136,6 +140,9 @@ class Model {
     return at == kNone ? nullptr : &smooth_normals_[at];
   }
 
+  /// [any] Returns the empty balls of each triangle, if the model is one mesh; else nothing.
+  const std::vector<EmptyBalls>& emptyBalls() const noexcept { return empty_balls_; }
+
   const std::vector<Placement>& placements() const noexcept { return placements_; }
   const BodyTree& body(std::uint32_t index) const noexcept { return bodies_[index]; }
   /// [any] Returns the root node of the tree over one face and its edges alone, inside the tree of its body. @param
@@ -169,6 +176,7 @@ class Model {
   std::vector<std::uint32_t> first_edge_at_, edges_at_;  ///< edges at vertex i: edges_at_[first_edge_at_[i]] on
   std::vector<std::uint32_t> smooth_corner_;
   std::vector<Eigen::Vector3f> smooth_normals_;
+  std::vector<EmptyBalls> empty_balls_;
   std::vector<BodyTree> bodies_;
   std::vector<std::int32_t> face_roots_;  ///< one per face, see rootOfFace()
   std::vector<Placement> placements_;

@@ -330,6 +330,7 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   run.restarts = kMostRestarts;
   const double way = (p - last_p_).norm();  // computed first, because a square root takes long
   moveNear(way);
+  if (walkMesh(p, budget)) return last_;
   begin(p, run);
   if (reuseLast(p, way, run)) return last_;
   if (!searchNear(p, way, run)) {

@@ -115,6 +115,8 @@ class Search {
 
   double vertexLimit(const Eigen::Vector3d& p) const noexcept;
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
+  class MeshWalk;
+  bool walkMesh(const Eigen::Vector3d& p, const SearchBudget& budget) noexcept;
   bool reuseLast(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
   bool searchNear(const Eigen::Vector3d& p, double way, Run& run) noexcept;
   void moveNear(double way) noexcept;

@@ -12,6 +12,7 @@
 
 #include "kernels/brep/search/search.hpp"
 #include "kernels/part/file.hpp"
+#include "sample_meshes.hpp"
 #include "sample_solids.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"
@@ -262,7 +263,8 @@ TEST(CertifiedWalks, NoFootThatIsToldToBeTheNearestIsFarther) {
   parts.emplace_back("torus of splines", splines("torus.yaml"));
   parts.emplace_back("coinciding points", sheetWithCoincidingPoints());
   parts.emplace_back("extruded polyline", extrudedPolyline());
-  parts.emplace_back("mesh", wavyMesh(40));
+  parts.emplace_back("mesh", samples::joined(wavyMesh(40)));
+  parts.emplace_back("closed mesh", samples::bumpyBall(3000));
   const std::int64_t each = std::max<std::int64_t>(1, ticksOfAll() / static_cast<std::int64_t>(parts.size()));
   Tally all;
   unsigned seed = 19;

@@ -2,11 +2,14 @@
 /// Meshes made by hand, for tests.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -31,6 +34,59 @@ inline Part meshOf(std::vector<Vector> points, const std::vector<std::array<std:
   Instance instance;
   instance.body = 0;
   part.instances.push_back(instance);
+  return part;
+}
+
+/// Tells each triangle which one is beyond each of its edges. Those around an edge form a ring.
+inline void joinTriangles(Part& part) {
+  std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> sides;  // two points, and the side between them
+  for (std::uint32_t t = 0; t < part.triangles.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto& corner = part.triangles[t].corner;
+      const auto [low, high] = std::minmax(corner[k], corner[(k + 1) % 3]);
+      sides.emplace_back(low, high, 4 * t + k);
+    }
+  std::sort(sides.begin(), sides.end());
+  const auto sameEdge = [&](std::size_t i, std::size_t j) {
+    return std::get<0>(sides[i]) == std::get<0>(sides[j]) && std::get<1>(sides[i]) == std::get<1>(sides[j]);
+  };
+  for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
+    while (end < sides.size() && sameEdge(first, end)) ++end;
+    for (std::size_t i = first; end - first > 1 && i < end; ++i) {
+      const std::uint32_t code = std::get<2>(sides[i]);
+      part.triangles[code / 4].across[code % 4] = std::get<2>(sides[i + 1 < end ? i + 1 : first]);
+    }
+  }
+}
+
+/// Returns a mesh whose triangles know their neighbours.
+inline Part joined(Part part) {
+  joinTriangles(part);
+  return part;
+}
+
+/// Returns a closed ball with a radius of 50 mm and with bumps. @param triangles approximate number of triangles
+inline Part bumpyBall(int triangles) {
+  const auto n = static_cast<std::uint32_t>(std::sqrt(triangles / 4.0)), m = 2 * n;
+  const auto at = [&](std::uint32_t i, std::uint32_t j) {
+    if (i == 0) return 0u;
+    return i == n ? 1u : 2 + (i - 1) * m + j % m;
+  };
+  std::vector<Vector> points{{0, 0, 0.05}, {0, 0, -0.05}};
+  for (std::uint32_t i = 1; i < n; ++i)
+    for (std::uint32_t j = 0; j < m; ++j) {
+      const double a = std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / m;
+      const double r = 0.05 + 0.003 * std::sin(5 * a) * std::cos(7 * b) * std::sin(a) * std::sin(a);
+      points.push_back({r * std::sin(a) * std::cos(b), r * std::sin(a) * std::sin(b), r * std::cos(a)});
+    }
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < m; ++j) {
+      if (i < n - 1) corners.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      if (i > 0) corners.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  Part part = joined(meshOf(std::move(points), corners));
+  part.bodies[0].flags = kClosed;
   return part;
 }
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// Empty balls: balls that touch a triangle of a mesh and hold nothing else of the mesh. A smaller ball that touches at
+/// the same point is inside and so empty as well. So the foot of its centre is that point, and a search need look at
+/// nothing else. (Empty balls that touch a surface: Amenta and Bern 1999. The largest ones are the balls of its medial
+/// axis.)
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "kernels/brep/elements/elements.hpp"
+#include "kernels/brep/geometry/triangle_foot.hpp"
+#include "kernels/brep/tree/coarse.hpp"
+
+namespace hapticd::brep {
+
+struct BodyTree;
+
+/// What is known of the empty balls of one triangle.
+struct EmptyBalls {
+  /// Bounds for the balls that touch on one side. A ball that touches at a point whose barycentric coordinate for the
+  /// corner opposite of edge k is b, is empty if its radius is less than `whole` and less than b times slope[k].
+  struct Side {
+    Coarse whole;     ///< [m] smaller balls hold no triangle but some that have a corner in common with this one
+    Coarse slope[3];  ///< [m] takes care of those
+  };
+
+  /// [rt] Returns a radius [m]: each smaller ball is empty that touches the triangle at a foot in its interior.
+  double radiusAt(const Hit& foot, bool back) const noexcept {
+    const Side& side = sides[back ? 1 : 0];
+    const double along[3] = {foot.v, 1 - foot.u - foot.v, foot.u};
+    double radius = wholeOn(back);
+    for (int k = 0; k < 3; ++k) {
+      const double limit = static_cast<double>(side.slope[k].value()) * along[k];
+      radius = limit < radius ? limit : radius;
+    }
+    return radius;
+  }
+  double wholeOn(bool back) const noexcept { return static_cast<double>(sides[back ? 1 : 0].whole.value()); }
+
+  Side sides[2];        ///< that to which the normal points, and the other
+  bool around = false;  ///< aroundCorner() tells all triangles that have a corner in common with this one
+};
+
+/// [rt] Visits the triangles around a corner of a triangle, over their edges. @param use is called with the index of
+/// each but the first. Returns how many triangles there are, or 0 if they are not a closed ring, or too many.
+template <class Use>
+std::uint32_t aroundCorner(const Part& part, std::uint32_t triangle, std::uint32_t corner, const Use& use) noexcept {
+  constexpr std::uint32_t kMost = 24;
+  const std::uint32_t point = part.triangles[triangle].corner[corner];
+  std::uint32_t at = triangle, edge = corner;  // both edges `corner` and the one before end at the corner
+  for (std::uint32_t count = 1; count <= kMost; ++count) {
+    const std::uint32_t code = part.triangles[at].across[edge];
+    if (code == kNone) return 0;
+    at = code / 4;
+    if (at == triangle) return count;
+    use(at);
+    const auto& corners = part.triangles[at].corner;
+    const std::uint32_t k = corners[0] == point ? 0 : corners[1] == point ? 1 : 2;
+    edge = code % 4 == k ? (k + 2) % 3 : k;
+  }
+  return 0;
+}
+
+/// [main] Returns the empty balls of a mesh, indexed by the number of the triangle in the part. It takes some
+/// microseconds for each triangle, on all processors. @param tree over the triangles of the mesh
+std::vector<EmptyBalls> findEmptyBalls(const Part& part, const BodyTree& tree);
+
+}  // namespace hapticd::brep
