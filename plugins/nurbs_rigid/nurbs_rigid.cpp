@@ -30,7 +30,7 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (tip_radius_ > 0 && pop_through_ > 0)
     throw std::invalid_argument(
         "tip_radius: a shell does not give way to a ball, only to a point; remove tip_radius or pop_through");
-  takeParts(instance_name_);
+  takeParts(instance_name_, left_out_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth)
     writeLog(HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
