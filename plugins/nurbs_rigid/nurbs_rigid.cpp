@@ -37,7 +37,8 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
     throw std::invalid_argument(
-        "texture.amplitude: a mesh has no parameters u and v, so it cannot have bumps; expected 0");
+        "texture.amplitude: a mesh has no parameters u and v, so it cannot have bumps; expected 0, or a geometry of "
+        "surfaces (a CAD part or a model file)");
   double slope = 0;
   for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
   if (slope > kSteepest)

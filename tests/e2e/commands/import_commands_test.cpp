@@ -174,6 +174,8 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   EXPECT_TRUE(has(check("nurbs_rigid", ", method: dpt").text, "a part is searched as a whole in every tick"));
   EXPECT_TRUE(has(check("nurbs_rigid", ", instance: lid").text, "there is no 'lid', expected one of egg"));
   EXPECT_TRUE(has(check("nurbs_rigid", ", sides: front").text, "is not closed"));
+  EXPECT_TRUE(has(check("nurbs_rigid", ", texture: {amplitude: 1e-4}").text,
+                  "expected 0, or a geometry of surfaces (a CAD part or a model file)"));
   EXPECT_TRUE(has(check("push_button", "").text, "is a part, but this plugin needs a model file"));
 }
 
