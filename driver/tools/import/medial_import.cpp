@@ -141,7 +141,7 @@ void printFeel(const MedialImport& options) {
                                                                 options.young, 1e3 * options.thickness)
                                                   : fmt::format("{:g} N/m", options.stiffness);
   if (options.damping > 0 || options.mass > 0)
-    std::printf("felt: %s, and as it moves %g N s/m and %g g for each sphere (dynamics: felt)\n", stiffness.c_str(),
+    std::printf("felt: %s, and as it moves %g N s/m and %.3g g for each sphere (dynamics: felt)\n", stiffness.c_str(),
                 options.damping, 1e3 * options.mass);
   else
     std::printf("felt: %s, as a body at rest, because it has neither damping nor mass (dynamics: off)\n",
