@@ -140,7 +140,7 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
     pressing.along_stiffness = most > 0 ? stiffness_ : 0;
     pressing.along_damping = viscosity_;
   }
-  body_->remember(index, pressing);
+  if (body_) body_->remember(index, pressing);
 }
 
 std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model) {
@@ -166,7 +166,8 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
       const trace::Patch& patch = model.patch(i);
       const double share = ((patch.hi - patch.lo) / extent.range).prod() / (kSamples * kSamples);
       for (int k = 0; k < kSamples * kSamples; ++k) {
-        const Eigen::Array2d middle(k / kSamples + 0.5, k % kSamples + 0.5);
+        const int row = k / kSamples, column = k % kSamples;
+        const Eigen::Array2d middle(row + 0.5, column + 0.5);
         const Eigen::Array2d uv = patch.lo + (patch.hi - patch.lo) * middle / kSamples;
         patch.surface.evaluate1(uv[0], uv[1], E);
         extent.length += share * extent.range * Eigen::Array2d(E.Su.norm(), E.Sv.norm());

@@ -194,7 +194,7 @@ template <class FootAt>
 contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT {
   const Eigen::Vector3d p(probe.position);
   if (balls_.empty() || !p.allFinite()) return foot_at(p);
-  const contact::Foot foot = balls_[index].step(foot_at, p, tip_radius_);
+  contact::Foot foot = balls_[index].step(foot_at, p, tip_radius_);
   if (!(foot.depth > deepest_) || !fitsAt(p, index)) return foot;
   forgetContact(index);
   if (model_) searched_[index] = 0;
