@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -183,6 +184,7 @@ void explainFiles(const scene::Scene& scene) {
 
 struct ExplainArguments {
   std::string scene, device;
+  std::optional<double> at;
   bool cost = false, json = false;
 };
 
@@ -200,8 +202,9 @@ int explain(const ExplainArguments& options) {
                                  ": is a recording, which is explained in words alone, so --cost, --json and "
                                  "--device do not apply; for numbers, run: hapticd export " +
                                  shellWord(options.scene) + " --csv FOLDER");
-    return explainRecording(options.scene);
+    return explainRecording(options.scene, options.at);
   }
+  if (options.at) return fail(kBadInput, options.scene + ": is no recording, and --at is a time of a recording");
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   const GuardedCommand guarded;
@@ -240,9 +243,11 @@ void addExplain(const Command& app, int& exit_code) {
                   "print a table of every part: the line of the scene that asks for it, its time per tick [ns] and its "
                   "memory [bytes]; parts that are not needed are listed too");
   command.addFlag("--json", options->json, "print the same table as JSON");
+  command.addOption("--at", options->at,
+                    "of a recording: why the force of this time [s] is what it is: models, faces, programs, limits");
   command.footer(
-      "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5    # what happened in "
-      "a run that was recorded");
+      "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5            # what "
+      "happened in a run that was recorded\n  hapticd explain run.h5 --at 2.5   # why the force was what it was then");
   setGuardedCallback(command, exit_code, [options] { return explain(*options); });
 }
 

@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 std::string neighbourMeant(const fs::path& absent, const fs::path& own) {
   std::vector<std::string> neighbours;
   std::error_code error;
-  for (fs::directory_iterator entry(absent.parent_path(), error), end; !error && entry != end; entry.increment(error))
+  const fs::path folder = absent.has_parent_path() ? absent.parent_path() : ".";
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (entry->path().filename() != own.filename() && entry->exists(error))
       neighbours.push_back(entry->path().filename().string());
   return suggestion(absent.filename().string(), neighbours);

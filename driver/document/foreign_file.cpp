@@ -53,8 +53,8 @@ std::string foreignFile(std::string_view text, const std::string& file) {
            : "a soft body (mat_deformable) needs a closed mesh of it instead: hapticd import "
              "--medial MESH.stl";
   return std::string(found->name) + ", expected YAML: convert it with hapticd import " + shellWord(file) + " -o " +
-         shellWord(part) + " and write geometry: " + part + " for nurbs_rigid; " + soft + " -o " +
-         shellWord(stem + ".ma");
+         shellWord(part) + " and write geometry: " + part +
+         " for nurbs_rigid (--scene SCENE.yaml writes such a scene); " + soft + " -o " + shellWord(stem + ".ma");
 }
 
 }  // namespace hapticd::document

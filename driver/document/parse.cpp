@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/regular_file.hpp"
+#include "document/absent_file.hpp"
 #include "document/foreign_file.hpp"
 #include "document/node.hpp"
 #include "document/recovery.hpp"
@@ -339,7 +340,8 @@ std::optional<Node> readOn(const std::string& text, const std::string& file, Pro
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {
   auto text = readRegular(file.string(), max_bytes);
   if (text) return *std::move(text);
-  report(problems, file.string(), 0, 0, "", text.error());
+  const bool absent = text.error().starts_with("there is no such file");
+  report(problems, file.string(), 0, 0, "", text.error() + (absent ? neighbourMeant(file, file) : ""));
   return std::nullopt;
 }
 

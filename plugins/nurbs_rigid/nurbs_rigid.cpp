@@ -30,14 +30,15 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (tip_radius_ > 0 && pop_through_ > 0)
     throw std::invalid_argument(
         "tip_radius: a shell does not give way to a ball, only to a point; remove tip_radius or pop_through");
-  takeParts(instance_name_);
+  takeParts(instance_name_, left_out_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth)
     writeLog(HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
     throw std::invalid_argument(
-        "texture.amplitude: a mesh has no parameters u and v, so it cannot have bumps; expected 0");
+        "texture.amplitude: a mesh has no parameters u and v, so it cannot have bumps; expected 0, or a geometry of "
+        "surfaces (a CAD part or a model file)");
   double slope = 0;
   for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
   if (slope > kSteepest)
@@ -139,7 +140,7 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
     pressing.along_stiffness = most > 0 ? stiffness_ : 0;
     pressing.along_damping = viscosity_;
   }
-  body_->remember(index, pressing);
+  if (body_) body_->remember(index, pressing);
 }
 
 std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model) {
@@ -165,7 +166,8 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
       const trace::Patch& patch = model.patch(i);
       const double share = ((patch.hi - patch.lo) / extent.range).prod() / (kSamples * kSamples);
       for (int k = 0; k < kSamples * kSamples; ++k) {
-        const Eigen::Array2d middle(k / kSamples + 0.5, k % kSamples + 0.5);
+        const int row = k / kSamples, column = k % kSamples;
+        const Eigen::Array2d middle(row + 0.5, column + 0.5);
         const Eigen::Array2d uv = patch.lo + (patch.hi - patch.lo) * middle / kSamples;
         patch.surface.evaluate1(uv[0], uv[1], E);
         extent.length += share * extent.range * Eigen::Array2d(E.Su.norm(), E.Sv.norm());

@@ -50,13 +50,17 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
             F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0,
                     "viscous drag along the surface during a contact"),
             F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
-                    "height of bumps on the surface, in rows along u and v; 0: smooth", HSP_P_LIVE | HSP_P_SAFETY),
+                    "height of bumps on the surface, in rows along u and v; not on meshes; 0: smooth",
+                    HSP_P_LIVE | HSP_P_SAFETY),
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
                     "length of a bump along u and v; it is rounded so that a surface has a whole number of bumps",
                     HSP_P_LIVE | HSP_P_SAFETY),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
-        motionFields<NurbsRigid>(), laterFields<NurbsRigid>());
+        motionFields<NurbsRigid>(), laterFields<NurbsRigid>(),
+        std::array{F::text("without", &NurbsRigid::left_out_, "",
+                           "parts only: names or paths of instances or assemblies that are left out, such as those "
+                           "that are models of their own; separated by commas")});
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -95,7 +99,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   }
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
 
-  std::string instance_name_;
+  std::string instance_name_, left_out_;
   int motion_ = kStatic;
   double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   double friction_static_ = 0, friction_dynamic_ = 0;

@@ -66,17 +66,36 @@ std::string lostOf(const brep::Part& part) {
          ", so a solid may feel like an open shell; `hapticd part info` lists everything that was lost";
 }
 
-/// Returns why there is no instance of this name, with the one that was probably meant; "" if there is one, or if no
-/// name is near. Only kernels know instances, but they know nothing of misspelt words.
-std::string unknownInstance(const brep::Part& part, const std::string& wanted) {
+/// Returns the name and the path of each instance.
+std::vector<std::string> namesIn(const brep::Part& part) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < part.instances.size(); ++i)
     for (const std::string& name : {brep::instancePath(part, i), brep::instanceName(part, i)}) names.push_back(name);
-  if (wanted.empty() || std::find(names.begin(), names.end(), wanted) != names.end()) return "";
+  return names;
+}
+
+/// Refuses a name that no instance has, if one was probably meant, and says which. Only kernels know instances, but
+/// they know nothing of misspelt words.
+void refuseMisspelt(const std::vector<std::string>& names, const std::string& parameter, const std::string& wanted) {
+  if (wanted.empty() || std::find(names.begin(), names.end(), wanted) != names.end()) return;
   const std::string meant = document::suggestionOfName(wanted, names);
-  return meant.empty() ? ""
-                       : "instance: there is no '" + wanted + "'" + meant +
-                             "; hapticd part info lists the names of all instances";
+  if (!meant.empty())
+    throw std::invalid_argument(parameter + ": there is no '" + wanted + "'" + meant +
+                                "; hapticd part info lists the names of all instances");
+}
+
+/// Returns the names in a list that is separated by commas. A name may have commas itself: then it stands alone.
+std::vector<std::string> listedNames(const std::string& list, const std::vector<std::string>& names) {
+  if (list.empty()) return {};
+  if (std::find(names.begin(), names.end(), list) != names.end()) return {list};
+  std::vector<std::string> listed;
+  for (size_t at = 0; at <= list.size();) {
+    const size_t end = std::min(list.find(',', at), list.size());
+    const size_t first = std::min(list.find_first_not_of(' ', at), end);
+    if (first < end) listed.push_back(list.substr(first, list.find_last_not_of(' ', end - 1) + 1 - first));
+    at = end + 1;
+  }
+  return listed;
 }
 
 }  // namespace
@@ -99,11 +118,13 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
         "whole in every tick; use method: newton");
   brep::ModelOptions options;
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
-  options.instance = instance_;
   brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), geometry_);
   const std::string lost = lostOf(part);
-  const std::string wrong = unknownInstance(part, instance_);
-  if (!wrong.empty()) throw std::invalid_argument(wrong);
+  const std::vector<std::string> names = namesIn(part);
+  options.instance = instance_;
+  options.without = listedNames(without_, names);
+  refuseMisspelt(names, "instance", instance_);
+  for (const std::string& name : options.without) refuseMisspelt(names, "without", name);
   part_ = std::make_unique<brep::Model>(std::move(part), options);
   const auto warn = [this](const std::string& what) { writeLog(HSP_LOG_WARNING, geometry_ + ": " + what); };
   if (!lost.empty()) warn(lost);

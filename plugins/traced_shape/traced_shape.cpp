@@ -53,9 +53,10 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
   if (sides_ == kAuto) sides_ = kFront;
   ModelFile file = readLogged(text, geometry_, *this);
-  if (!instance_.empty())
-    throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
-                                " is a model file, which has no instances; geometry must be a part (.hpart)");
+  for (const auto& [parameter, name] : {std::pair("instance", instance_), std::pair("without", without_)})
+    if (!name.empty())
+      throw std::invalid_argument(std::string(parameter) + ": '" + name + "', but " + geometry_ +
+                                  " is a model file, which has no instances; geometry must be a part (.hpart)");
   trace::ModelOptions options;
   options.edges = std::move(file.edges);
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;

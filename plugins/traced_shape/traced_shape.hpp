@@ -102,10 +102,11 @@ class TracedShape : public Shape {
   const void* tracedExtension(const char* name);
 
   /// [main] Allows parts instead of model files; call it before load().
-  /// @param instance see brep::ModelOptions
-  void takeParts(const std::string& instance) {
+  /// @param instance see brep::ModelOptions @param without names that are left out, separated by commas
+  void takeParts(const std::string& instance, const std::string& without) {
     takes_parts_ = true;
     instance_ = instance;
+    without_ = without;
   }
 
   std::string geometry_;
@@ -170,7 +171,7 @@ class TracedShape : public Shape {
 
   bool takes_parts_ = false;
   double deepest_ = kMostHeld;  ///< see letGoBeyond()
-  std::string instance_;
+  std::string instance_, without_;
   std::unique_ptr<brep::Model> part_;
   std::vector<brep::Tracer> part_tracers_;  ///< one per probe
   std::vector<contact::BallProxy> balls_;   ///< one per probe; empty if a point touches the model
@@ -193,7 +194,7 @@ template <class FootAt>
 contact::Foot TracedShape::footOf(const hsp_probe& probe, uint32_t index, const FootAt& foot_at) noexcept HSP_RT {
   const Eigen::Vector3d p(probe.position);
   if (balls_.empty() || !p.allFinite()) return foot_at(p);
-  const contact::Foot foot = balls_[index].step(foot_at, p, tip_radius_);
+  contact::Foot foot = balls_[index].step(foot_at, p, tip_radius_);
   if (!(foot.depth > deepest_) || !fitsAt(p, index)) return foot;
   forgetContact(index);
   if (model_) searched_[index] = 0;

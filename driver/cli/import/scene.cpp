@@ -191,9 +191,12 @@ std::string feelLines(const FirstScene& first, double stiffness) {
 std::string instanceLines(const FirstScene& first, const ModelFacts& facts) {
   if (facts.instances.size() < 2) return "";
   return fmt::format(
-      "      # This is the whole assembly of {} parts. One of them alone, or each as a model that moves by itself:\n"
-      "      # instance: {}   # all names: hapticd part info {}\n",
-      facts.instances.size(), yamlText(facts.instances.front()), shellWord(fileName(first.model)));
+      "      # This is the whole assembly of {} parts. One of them alone, as a model that can move:\n"
+      "      # instance: {}   # all names: hapticd part info {}\n"
+      "      # The others, in a second model with the same pose, which stands still:\n"
+      "      # without: {}\n",
+      facts.instances.size(), yamlText(facts.instances.front()), shellWord(fileName(first.model)),
+      yamlText(facts.instances.front()));
 }
 
 /// A small ball about the tip for solids that may touch each other; "" for a single one, and for what is open.

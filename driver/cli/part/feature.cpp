@@ -144,6 +144,27 @@ std::string triangleText(const Model& model, const brep::Placement& place, std::
   return text + " mm";
 }
 
+/// The faces about one axis. Those of one kind and size are named together.
+struct RoundFaces {
+  Axis axis;
+  std::vector<std::pair<std::string, std::vector<std::uint32_t>>> features;  ///< of each kind
+
+  void add(const std::string& kind, std::uint32_t feature) {
+    auto same = std::find_if(features.begin(), features.end(), [&](const auto& one) { return one.first == kind; });
+    if (same == features.end()) same = features.insert(same, {kind, {}});
+    same->second.push_back(feature);
+  }
+
+  std::string text() const {
+    std::string text;
+    for (const auto& [kind, numbers] : features) {
+      text += (text.empty() ? "" : "; ") + kind + (numbers.size() > 1 ? ": features " : ": feature ");
+      for (std::size_t i = 0; i < numbers.size(); ++i) text += (i > 0 ? ", " : "") + std::to_string(numbers[i]);
+    }
+    return text;
+  }
+};
+
 }  // namespace
 
 std::optional<std::uint32_t> featureCalled(const brep::Part& part, const std::string& asked) {
@@ -174,14 +195,10 @@ std::string featureText(const brep::Part& part, std::uint32_t feature) {
 
 std::vector<std::string> axisLines(const brep::Part& part) {
   const Model model{brep::Part(part)};
-  struct Line {
-    Axis axis;
-    std::string text;
-  };
   std::vector<std::string> all;
   for (const brep::Placement& place : model.placements()) {
     const brep::Body& body = model.part().bodies[place.body];
-    std::vector<Line> lines;  // of this instance
+    std::vector<RoundFaces> axes;  // of this instance
     for (std::uint32_t i = 0; i < body.face_count; ++i) {
       const std::uint32_t index = body.first_face + i;
       const brep::Surface& surface = model.part().surfaces[model.part().faces[index].surface];
@@ -189,15 +206,12 @@ std::vector<std::string> axisLines(const brep::Part& part) {
       const Eigen::AlignedBox3d box = boxOf(model, place, index);
       const auto axis = axisOf(surface, place, box.isEmpty() ? Vector3d(place.position) : Vector3d(box.center()));
       if (!axis) continue;
-      const std::string face = kindText(surface) + ": feature " + std::to_string(place.first_feature + i);
-      const auto known =
-          std::find_if(lines.begin(), lines.end(), [&](const Line& one) { return one.axis.same(*axis); });
-      if (known != lines.end())
-        known->text += ", " + face;
-      else
-        lines.push_back({*axis, brep::instancePath(part, place.instance) + ": " + axis->keys() + "  (" + face});
+      auto known = std::find_if(axes.begin(), axes.end(), [&](const RoundFaces& one) { return one.axis.same(*axis); });
+      if (known == axes.end()) known = axes.insert(known, {*axis, {}});
+      known->add(kindText(surface), place.first_feature + i);
     }
-    for (const Line& line : lines) all.push_back(line.text + ")");
+    for (const RoundFaces& faces : axes)
+      all.push_back(brep::instancePath(part, place.instance) + ": " + faces.axis.keys() + "  (" + faces.text() + ")");
   }
   return all;
 }

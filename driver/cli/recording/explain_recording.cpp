@@ -7,6 +7,7 @@
 
 #include "base/file_beginning.hpp"
 #include "base/file_ending.hpp"
+#include "cli/recording/force_of_a_tick.hpp"
 #include "cli/recording/joint_ranges.hpp"
 #include "cli/recording/recorded_marks.hpp"
 #include "cli/recording/recorded_orders.hpp"
@@ -94,13 +95,6 @@ void printLines(const char* title, const std::vector<std::string>& lines, const 
                 stream);
 }
 
-}  // namespace
-
-bool isRecording(const std::string& file) {
-  const auto first = readBeginning(file, 4);  // it does not wait for the writer of a pipe
-  return first && *first == "\x89HDF";
-}
-
 /// Returns a line for each mark, such as "2.0010 s  trial 7 begins".
 std::vector<std::string> markLines(const record::Recording& recording) {
   std::vector<std::string> lines;
@@ -108,18 +102,38 @@ std::vector<std::string> markLines(const record::Recording& recording) {
   return lines;
 }
 
-int explainRecording(const std::string& file) {
+/// Prints what a recording is of, what happened, what was touched and what moved.
+void printAll(const std::string& file, const record::Recording& recording, const servo::RecordedRun& run,
+              const servo::RunModels& models) {
+  printRun(file, recording, run, models);
+  printEvents(file, servo::messagesOf(recording, run, models));
+  printLines("marks", markLines(recording), "marks");
+  printLines("orders", recordedOrders(recording, run, models), "orders");
+  printLines("touched", touchedFeatures(recording, models, run.facts.rate), "contacts");
+  printLines("moved", jointRanges(recording, models, run.facts.rate), "poses");
+}
+
+}  // namespace
+
+bool isRecording(const std::string& file) {
+  const auto first = readBeginning(file, 4);  // it does not wait for the writer of a pipe
+  return first && *first == "\x89HDF";
+}
+
+int explainRecording(const std::string& file, std::optional<double> at) {
   const auto recording = record::Recording::open(file);
   if (!recording) return fail(kBadInput, recording.error());
   const auto run = servo::readAbout((*recording)->aboutJson());
   if (!run) return fail(kBadInput, file + ": " + run.error());
   const servo::RunModels models(**recording, run->scene);
-  printRun(file, **recording, *run, models);
-  printEvents(file, servo::messagesOf(**recording, *run, models));
-  printLines("marks", markLines(**recording), "marks");
-  printLines("orders", recordedOrders(**recording, *run, models), "orders");
-  printLines("touched", touchedFeatures(**recording, models, run->facts.rate), "contacts");
-  printLines("moved", jointRanges(**recording, models, run->facts.rate), "poses");
+  const auto forces = forceLines(**recording, models, run->scene, at);
+  if (!forces) return fail(kBadInput, forces.error());
+  if (at) {
+    printLines("force", *forces, "contacts");
+  } else {
+    printAll(file, **recording, *run, models);
+    printLines("greatest force (--at SECONDS shows that of another time)", *forces, "contacts");
+  }
   if (auto same = (*recording)->unchanged(); !same) return fail(kFailed, same.error());
   return kWorked;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What `hapticd explain` prints of a recording.
 #pragma once
+#include <optional>
 #include <string>
 
 namespace hapticd::cli {
@@ -9,6 +10,7 @@ namespace hapticd::cli {
 bool isRecording(const std::string& file);
 
 /// [main] Prints what a recording is of, and its events in words. Returns the exit code.
-int explainRecording(const std::string& file);
+/// @param at [s] only why the forces of this time are what they are
+int explainRecording(const std::string& file, std::optional<double> at);
 
 }  // namespace hapticd::cli

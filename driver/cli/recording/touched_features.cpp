@@ -6,12 +6,8 @@
 #include <cstdio>
 #include <map>
 #include <optional>
-#include <span>
 
-#include "base/regular_file.hpp"
-#include "kernels/part/file.hpp"
-#include "kernels/part/limit.hpp"
-#include "kernels/part/names.hpp"
+#include "cli/recording/recorded_part.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -70,21 +66,6 @@ std::map<std::size_t, Touched> contactTicks(const record::RecordedStream& contac
   return touched;
 }
 
-/// Reads the part of a model. Returns nothing if the model has none, or if the file cannot be read any more.
-std::optional<brep::Part> partOf(const scene::Model& model) {
-  for (const scene::Value& value : model.parameters) {
-    if (value.id != "geometry" || !value.text.ends_with(".hpart")) continue;
-    const auto bytes = readRegular(value.text, brep::kMostPartBytes);
-    if (!bytes) return {};
-    try {
-      return brep::readPart(std::as_bytes(std::span(*bytes)), value.text);
-    } catch (const brep::PartError&) {
-      return {};
-    }
-  }
-  return {};
-}
-
 /// Returns for how long a touched model gave no force, or "" if it always did.
 std::string withoutForce(std::uint64_t ticks, double rate) {
   if (ticks == 0) return "";
@@ -103,11 +84,9 @@ std::string longest(const Ticks& ticks, const std::optional<brep::Part>& part, d
   std::string text;
   for (std::size_t i = 0; i < std::min(features.size(), kMostNamed); ++i) {
     const auto& [feature, count] = features[i];
-    std::string name = part ? brep::featureName(*part, feature) : "";
-    if (name.empty()) name = "feature " + std::to_string(feature);
     char time[40];
     std::snprintf(time, sizeof time, " for %.3g s", static_cast<double>(count) / rate);
-    text += (text.empty() ? "" : ", ") + name + time;
+    text += (text.empty() ? "" : ", ") + featureNameIn(part, feature) + time;
   }
   if (features.size() > kMostNamed) text += ", and " + std::to_string(features.size() - kMostNamed) + " others";
   return text;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/shell_word.hpp"
 #include "document/json_text.hpp"
 #include "hapticd/abi.h"
 
@@ -150,10 +151,25 @@ void printWarnings(document::Problems warnings, std::FILE* out) {
   printProblems(warnings, out);
 }
 
+namespace {
+
+/// Says that a scene of this name ships, if the file is absent and its name is one of those.
+void printShippedScene(const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path name = std::filesystem::path(file).filename();
+  if (name.empty() || std::filesystem::exists(file, error)) return;
+  for (const std::string& scene : {name.string(), name.string() + ".yaml"})
+    if (const auto shipped = host::shippedFile("scenes/" + scene))
+      std::fprintf(stderr, "  fix: a scene of this name ships: %s\n", shellWord(shipped->string()).c_str());
+}
+
+}  // namespace
+
 std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file,
                                               bool default_device) {
   scene::Loaded loaded = scene::load(file, catalog(), {default_device, device_file});
   printProblems(loaded.problems, stderr);
+  if (!loaded.scene) printShippedScene(file);
   if (loaded.scene) applyDaemonFile(*loaded.scene);
   return std::move(loaded.scene);
 }

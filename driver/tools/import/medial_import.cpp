@@ -89,6 +89,15 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
   return deviation;
 }
 
+/// Says what may bring a body nearer to its surface. Four times as many samples are half as far apart.
+std::string adviceOf(bool has_all_spheres, int samples) {
+  constexpr int kMostSamples = 1000000;
+  if (has_all_spheres) return "more --spheres may help";
+  const std::string angle = "a smaller --angle where the surface has edges";
+  if (samples >= kMostSamples) return angle + " may help";
+  return fmt::format("more samples may help, such as --samples {}, or {}", std::min(4 * samples, kMostSamples), angle);
+}
+
 /// Measures the distance of the given surface from the written body, and of the body from the surface, and prints both.
 Result<void> report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
                     const SurfaceSamples& samples, ProgressLine& progress, host::Catalog& catalog) {
@@ -123,9 +132,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
     std::fprintf(stderr,
                  "warning: the body and the surface differ by up to %.4g mm, but --tolerance allows only %.4g mm: %s\n",
                  1e3 * reached, 1e3 * settings.tolerance,
-                 static_cast<int>(axis.spheres.size()) >= settings.most_spheres
-                     ? "more --spheres may help"
-                     : "more --samples may help, or a smaller --angle where the surface has edges");
+                 adviceOf(static_cast<int>(axis.spheres.size()) >= settings.most_spheres, options.samples).c_str());
   return {};
 }
 
@@ -141,7 +148,7 @@ void printFeel(const MedialImport& options) {
                                                                 options.young, 1e3 * options.thickness)
                                                   : fmt::format("{:g} N/m", options.stiffness);
   if (options.damping > 0 || options.mass > 0)
-    std::printf("felt: %s, and as it moves %g N s/m and %g g for each sphere (dynamics: felt)\n", stiffness.c_str(),
+    std::printf("felt: %s, and as it moves %g N s/m and %.3g g for each sphere (dynamics: felt)\n", stiffness.c_str(),
                 options.damping, 1e3 * options.mass);
   else
     std::printf("felt: %s, as a body at rest, because it has neither damping nor mass (dynamics: off)\n",

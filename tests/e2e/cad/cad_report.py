@@ -68,7 +68,9 @@ def axes():
     code, out, err = run("part", "info", part, "--axes")
     lines = [line for line in out.splitlines() if line.startswith("as1/rod-assembly_1/rod_1: ")]
     check("a rod has one axis", code == 0 and len(lines) == 1, out + err)
-    feature = re.search(r"feature (\d+)", lines[0])[1]
+    kinds = re.findall(r"[(;] ?(an? [^:;]*): features? [\d, ]+", lines[0])
+    check("its faces of one kind and size are named together", kinds and len(set(kinds)) == len(kinds) and "features " in lines[0], lines)
+    feature = re.search(r"features? (\d+)", lines[0])[1]
     one = run("part", "info", part, "--feature", feature)[1]
     check("it is that of its face", re.search(r"joint: hinge, pivot: \[.*\], axis: \[.*?\]", lines[0])[0] in one, (lines, one))
 

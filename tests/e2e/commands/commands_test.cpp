@@ -84,6 +84,21 @@ TEST_F(Commands, CheckAcceptsAGoodSceneAndDevice) {
   EXPECT_EQ(outcome.text, scene + ": ok\n" + arm + ": ok\n");
 }
 
+TEST_F(Commands, AnAbsentSceneNamesTheOneThatWasMeant) {
+  put("teapot-mine.yaml", kScene);
+  for (const char* command : {"run ", "check ", "explain "}) {
+    const Outcome outcome = run(command + (dir_ / "teapot_mine.yaml").string());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_TRUE(has(outcome.text, "expected the path of a file (did you mean \"teapot-mine.yaml\"?)")) << outcome.text;
+  }
+  for (const char* name : {"teapot", "teapot.yaml", "elsewhere/teapot.yaml"})
+    EXPECT_TRUE(has(run(std::string("run ") + name, kShipped).text,
+                    "\n  fix: a scene of this name ships: " HAPTICD_SOURCE_DIR "/config/scenes/teapot.yaml\n"));
+  EXPECT_FALSE(has(run("run teapod").text, "ships"));
+  const Outcome mesh = run("run " + put("part.stl", "solid part\nendsolid\n"));
+  EXPECT_TRUE(has(mesh.text, "for nurbs_rigid (--scene SCENE.yaml writes such a scene)")) << mesh.text;
+}
+
 TEST_F(Commands, CheckPrintsTheProblemsOfEveryFileAndGoesOn) {
   const std::string good = put("arm.yaml", kArm), bad = put("bad.yaml", "hapticd: 1\nmodels: 3\nx: 1\n");
   const Outcome outcome = run("check " + bad + " " + (dir_ / "missing.yaml").string() + " " + good);

@@ -218,10 +218,13 @@ def cad():
     made(join("trough.brep"), "open.hpart")
     made(join("roof.brep"), "roof.hpart")  # a crease: the hand presses what is drawn
     text, _ = made(join("assembly.step"), "assembly.hpart")
-    name = re.search(r"# (instance: \S+)", text)
+    name, rest = (re.search(rf"# ({key}: \S+)", text) for key in ("instance", "without"))
     check("a small ball is stopped by each part of an assembly", "tip_radius: 0.0002" in text, text)
     check("an assembly names its parts", name and "the whole assembly of 2 parts" in text and text.count("plugin:") == 1, text)
     alone = write(folder, "alone.yaml", text.replace("# " + name[1], name[1]))
+    others = write(folder, "others.yaml", text.replace("# " + rest[1], rest[1]))
+    features = [run("explain", scene).stdout for scene in (alone, others)]
+    check("the lines part the assembly", "details              features 0 to 5:" in features[0] and "details              features 6 to" in features[1], "\n".join(features))
     check("the line makes a scene of one of them", "no instance" not in run("check", alone).stdout and run("check", alone).returncode == 0)
 
 

@@ -174,6 +174,8 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   EXPECT_TRUE(has(check("nurbs_rigid", ", method: dpt").text, "a part is searched as a whole in every tick"));
   EXPECT_TRUE(has(check("nurbs_rigid", ", instance: lid").text, "there is no 'lid', expected one of egg"));
   EXPECT_TRUE(has(check("nurbs_rigid", ", sides: front").text, "is not closed"));
+  EXPECT_TRUE(has(check("nurbs_rigid", ", texture: {amplitude: 1e-4}").text,
+                  "expected 0, or a geometry of surfaces (a CAD part or a model file)"));
   EXPECT_TRUE(has(check("push_button", "").text, "is a part, but this plugin needs a model file"));
 }
 
@@ -192,6 +194,38 @@ TEST_F(ImportCommands, ANameThatSeveralInstancesHaveNeedsAPath) {
   EXPECT_TRUE(has(several.text, path)) << several.text;
   EXPECT_EQ(check(path).exit_code, 0);
   EXPECT_EQ(check("rod_1").exit_code, 0);
+}
+
+/// One instance moves, and one model stands for all others.
+TEST_F(ImportCommands, APartIsTakenWithoutSomeOfItsInstances) {
+  const auto explain = [&](const std::string& geometry, const std::string& without) {
+    return run("explain " + put("scene.yaml",
+                                "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: "
+                                "{geometry: " HAPTICD_SOURCE_DIR "/config/models/" +
+                                    geometry + ", without: '" + without + "'}}\n"),
+               kShipped);
+  };
+  const Outcome rest = explain("as1.hpart", "rod_1, l-bracket-assembly_2");
+  EXPECT_EQ(rest.exit_code, 0) << rest.text;
+  EXPECT_TRUE(has(rest.text, "as1/l-bracket-assembly_1/l-bracket_1")) << rest.text;
+  EXPECT_FALSE(has(rest.text, "rod_1") || has(rest.text, "l-bracket-assembly_2")) << rest.text;
+  EXPECT_TRUE(has(explain("as1.hpart", "plate_1, rod_2").text, "without: there is no 'rod_2' (did you mean"));
+  EXPECT_TRUE(has(explain("box.yaml", "lid").text, "box.yaml is a model file, which has no instances"));
+}
+
+/// Regression: the walls of other instances were warned of, since without its instance a model is the whole part.
+TEST_F(ImportCommands, AnUnknownInstanceGetsNoWarningsOfOthers) {
+  for (const char* instance : {"piston", "[plate_1]"}) {
+    const Outcome outcome =
+        run("check " + put("scene.yaml",
+                           "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {stiffness: "
+                           "10, geometry: " HAPTICD_SOURCE_DIR "/config/models/as1.hpart, instance: " +
+                               std::string(instance) + "}}\n"),
+            kShipped);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_TRUE(has(outcome.text, "parameters.instance: ")) << outcome.text;
+    EXPECT_FALSE(has(outcome.text, "a wall is")) << outcome.text;
+  }
 }
 
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {

@@ -18,7 +18,7 @@ from e2e import check, finish, until
 HAPTICD, SCENES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 NOBODY = 65534
 SECRET = "hidden: the line of a file that root alone may read"
-MODELS = os.path.join(SCENES, "..", "models")
+SPHERE = open(os.path.join(SCENES, "..", "models", "sphere.yaml")).read()
 
 if os.geteuid() != 0:
     print("skipped: only root can be another user")
@@ -35,6 +35,7 @@ class Daemon:
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
         self.environment.pop("XDG_RUNTIME_DIR", None)
         self.socket = os.path.join(folder, "other.sock")
+        self.sphere = self.write("shape.yaml", SPHERE)  # the checkout may be where another user cannot read
         self.run = subprocess.Popen([HAPTICD, "run", self.file("own", "sphere", 0o600), "--name", "other", "--for", "120", "--record", os.path.join(folder, "run.h5")],
                                     env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         until(lambda: os.path.exists(self.socket) and self.ctl("status", user=0)[0] == 0, 40)
@@ -49,7 +50,7 @@ class Daemon:
         return file
 
     def file(self, name, model, mode=0o644, owner=0, geometry=None):
-        geometry = geometry or os.path.join(MODELS, "sphere.yaml")
+        geometry = geometry or self.sphere
         return self.write(name + ".yaml", f"hapticd: 1\nmodels:\n  - {{name: {model}, plugin: nurbs_rigid, parameters: "
                           f"{{geometry: {geometry}}}}}\n", mode, owner)
 
@@ -117,7 +118,7 @@ def secrets(daemon):
 
 def passes(daemon):
     """What the other user may read is added, wherever it is and whatever it is called."""
-    own = daemon.write("mine.yaml", open(os.path.join(MODELS, "sphere.yaml")).read(), 0o600, NOBODY)
+    own = daemon.write("mine.yaml", SPHERE, 0o600, NOBODY)
     scene = daemon.file("mine_scene", "mine", 0o600, NOBODY, own)
     code, said = daemon.ctl("add", scene)
     check("ctl adds the scene and the model of its user", code == 0, said)

@@ -68,6 +68,7 @@ def recoverEllipsoid(folder):
     code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.00001", out, *FEWER)
     check("more than can be reached is warned of with both figures", code == 0 and
           "warning: the body and the surface differ by up to 0." in text and "--tolerance allows only 0.01 mm" in text, text)
+    check("and with a number of samples that may help", f"such as --samples {4 * int(FEWER[1] if FEWER else 20000)}, or" in text, text)
 
 
 def recoverCube(folder):

@@ -55,8 +55,9 @@ ModelTrial DraftModels::attempt(double max_force, double setup_seconds) const {
   ModelTrial trial = tryModels(draft_, max_force, left_out_, setup_seconds);
   for (document::Problems* told : {&trial.problems, &trial.warnings})
     std::erase_if(*told, [this](const document::Problem& one) { return dependsOnUnread(one); });
+  std::erase_if(trial.warnings, [this](const document::Problem& one) { return isOfUnknownPart(one); });
   for (size_t i = 0; i < trial.boxes.size(); ++i)
-    if (unread_[i].ids.contains("instance")) trial.boxes[i].reset();
+    if (isPartUnknown(i)) trial.boxes[i].reset();
   for (size_t i = 0; i < trial.stiffness.size(); ++i)
     if (unread_[i].any || !unread_[i].ids.empty()) trial.stiffness[i] = claimOf(i, trial.stiffness[i]);
   return trial;
@@ -106,6 +107,15 @@ bool DraftModels::isRead(const document::Problem& one) const {
 bool DraftModels::isUnread(size_t model, const std::string& id) const {
   return unread_[model].ids.contains(id) ||
          (unread_[model].any && givenIn(draft_.models[model].parameters, id) == nullptr);
+}
+
+bool DraftModels::isPartUnknown(size_t model) const {
+  return unread_[model].ids.contains("instance") || unread_[model].ids.contains("without");
+}
+
+bool DraftModels::isOfUnknownPart(const document::Problem& one) const {
+  const auto model = modelOf(one.key);
+  return model && *model < unread_.size() && isPartUnknown(*model) && one.key.find('.') == one.key.npos;
 }
 
 double DraftModels::claimOf(size_t model, double claimed) const {

@@ -37,6 +37,10 @@ class DraftModels {
 
  private:
   bool isUnread(size_t model, const std::string& id) const;
+  /// Returns true if it is not known which instances of its part a model has.
+  bool isPartUnknown(size_t model) const;
+  /// Returns true if a warning is about the surfaces of a model that may not be its own.
+  bool isOfUnknownPart(const document::Problem& one) const;
   /// Returns the stiffness that a model claims, or 0 if it may come from a value that was not read.
   double claimOf(size_t model, double claimed) const;
   /// Returns true if a plugin's message names a parameter that was not read. A message about a file names such

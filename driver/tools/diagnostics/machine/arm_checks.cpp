@@ -48,7 +48,11 @@ std::string fixOf(const std::string& message) {
 /// was tested.
 std::optional<Finding> missing(const ArmControls& found) {
   if (found.opened) return std::nullopt;
-  return Finding{found.arm, Verdict::kWarn, "cannot be opened: " + found.why.substr(0, found.why.find('\n')),
+  constexpr std::string_view kRefused = "cannot be opened: ";  // a refusal of a module begins with the arm and this
+  const std::string line = found.why.substr(0, found.why.find('\n'));
+  const size_t told = line.find(kRefused);
+  const std::string what = told == line.npos ? std::string(kRefused) + line : line.substr(told);
+  return Finding{found.arm, Verdict::kWarn, what,
                  "what follows is what its file says; nothing of the arm itself was tried", fixOf(found.why)};
 }
 

@@ -228,13 +228,22 @@ TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_
   return tried;
 }
 
+/// Returns true for a parameter that says which instances of a part a model has.
+bool choosesInstances(const std::string& id) {
+  return id == "instance" || id == "without";
+}
+
 /// Sets up a refused model again without the parameters that the plugin objects to, a few times, so that further
-/// objections and the size of the model are known. An objection that follows only from a left-out parameter is dropped.
-TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
-                       host::ChildProgress& trail, PackedTexts& problems) {
+/// objections and the size of the model are known. An objection that follows only from a left-out parameter is dropped,
+/// and so is a warning that names no parameter: with the left-out ones the surfaces or the wall may be others.
+TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error,
+                       host::ChildProgress& trail, PackedTexts& problems, PackedTexts& warnings) {
   constexpr int kMost = 3;  // parameters that are left out
   scene::Model rest = scene.models[index];
   std::vector<std::string> left_out;
+  const Log log = [&](int level, const std::string&, const std::string& text) {
+    if (level == HSP_LOG_WARNING && objectionsIn(rest, text).front().value != nullptr) warnings.add(index, text);
+  };
   TrialResult tried;
   for (int round = 0; round < kMost; ++round) {
     std::set<std::string> named;
@@ -256,6 +265,7 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
     error = tried.error;
   }
   tried.stiffness = 0;  // it may depend on the parameters that were left out
+  if (std::any_of(left_out.begin(), left_out.end(), choosesInstances)) tried.box.setEmpty();
   return tried;
 }
 
@@ -294,7 +304,7 @@ void tryOtherGeometry(const scene::Scene& scene, uint32_t index, double max_forc
         geometry = other.parameters.insert(geometry, *missing);
     if (!file || geometry == other.parameters.end()) return;
     geometry->text = file->string();
-    std::erase_if(other.parameters, [](const scene::Value& value) { return value.id == "instance"; });
+    std::erase_if(other.parameters, [](const scene::Value& value) { return choosesInstances(value.id); });
     const Log log = [&](int level, const std::string&, const std::string& text) {
       const Objection one = objectionsIn(other, text).front();
       if (level == HSP_LOG_WARNING && one.value != nullptr && isOfItself(one.value->id)) warnings.add(index, text);
@@ -321,7 +331,7 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
     if (!tried.error.empty()) {
       problems.add(i, tried.error);
       const bool of_file = objectionsIn(scene.models[i], tried.error).front().value == nullptr;
-      tried = tryWithout(scene, i, max_force, tried.error, log, trail, problems);
+      tried = tryWithout(scene, i, max_force, tried.error, trail, problems, warnings);
       if (of_file) tryOtherGeometry(scene, i, max_force, trail, problems, warnings);
     }
     claims.number(tried.stiffness);

@@ -32,7 +32,8 @@ std::string placeText(const scene::Model& model) {
   const scene::Value* geometry = givenIn(model.parameters, "geometry");
   if (geometry == nullptr || (model.kinematic && model.path.empty())) return "";
   std::string text = model.plugin + "\n" + geometry->text;
-  if (const scene::Value* instance = givenIn(model.parameters, "instance")) text += "\n" + instance->text;
+  for (const char* id : {"instance", "without"})
+    if (const scene::Value* named = givenIn(model.parameters, id)) text += fmt::format("\n{} {}", id, named->text);
   if (const scene::Value* sides = givenIn(model.parameters, "sides")) text += fmt::format("\nsides {}", sides->number);
   if (!model.kinematic) return text + poseText(model.pose);
   for (const scene::PathPoint& point : model.path) text += fmt::format("\nt {}", point.t) + poseText(point.pose);
@@ -86,7 +87,7 @@ void reportIdlePoses(const scene::Scene& scene, const std::vector<bool>& placed,
 bool isPlaced(const UnreadModel& unread) {
   if (unread.any || unread.hasOwn("pose") || unread.hasOwn("path") || unread.hasOwn("motion")) return false;
   return std::none_of(unread.ids.begin(), unread.ids.end(), [](const std::string& id) {
-    return id == "geometry" || id == "instance" || id == "sides" || id == "motion";
+    return id == "geometry" || id == "instance" || id == "without" || id == "sides" || id == "motion";
   });
 }
 

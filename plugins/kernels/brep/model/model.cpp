@@ -24,7 +24,7 @@ class ModelBuilder {
   ModelBuilder(Model& model, const ModelOptions& options) : model_(model), part_(model.part_), options_(options) {}
 
   void run() {
-    model_.placements_ = placementsOf(part_, options_.instance, model_.feature_count_);
+    model_.placements_ = placementsOf(part_, options_, model_.feature_count_);
     for (Curve2& curve : part_.curves2) recogniseLine(curve);
     model_.geometry_ = std::make_unique<Geometry>(part_, options_.form);
     classifyEdges(*model_.geometry_, part_.edges);

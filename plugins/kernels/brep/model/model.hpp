@@ -24,6 +24,8 @@ struct ModelOptions {
   /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. The instance keeps
   /// the pose that it has in the part.
   std::string instance;
+  /// Names or paths of instances or assemblies that are left out.
+  std::vector<std::string> without;
   /// Find the empty balls of a mesh, so that a probe can be followed over it quickly. It takes some microseconds a
   /// triangle.
   bool empty_balls = true;

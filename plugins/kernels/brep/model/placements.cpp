@@ -24,7 +24,7 @@ bool belongs(const Part& part, std::uint32_t index, const std::string& wanted) {
 
 /// Refuses a name that instances with different paths have. Instances with one path cannot be distinguished, so all of
 /// them are taken.
-void refuseAmbiguous(const Part& part, const std::string& wanted) {
+void refuseAmbiguous(const Part& part, const std::string& parameter, const std::string& wanted) {
   constexpr std::size_t kMost = 12;
   std::set<std::string> paths;
   for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
@@ -39,17 +39,18 @@ void refuseAmbiguous(const Part& part, const std::string& wanted) {
   for (const std::string& path : paths)
     if (count++ < kMost) listed += (count > 1 ? ", " : "") + path;
   if (count > kMost) listed += ", ... (" + std::to_string(count) + " in all)";
-  throw std::invalid_argument("instance: several are named '" + wanted + "', expected one of their paths " + listed);
+  throw std::invalid_argument(parameter + ": several are named '" + wanted + "', expected one of their paths " +
+                              listed);
 }
 
-[[noreturn]] void failUnknown(const Part& part, const std::string& wanted) {
+[[noreturn]] void failUnknown(const Part& part, const std::string& parameter, const std::string& wanted) {
   constexpr std::size_t kMost = 12;
   std::string names;
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < part.instances.size(); ++i, ++count)
     if (count < kMost) names += (count > 0 ? ", " : "") + instancePath(part, i);
   if (count > kMost) names += ", ... (" + std::to_string(count) + " in all)";
-  throw std::invalid_argument("instance: there is no '" + wanted + "', expected one of " + names);
+  throw std::invalid_argument(parameter + ": there is no '" + wanted + "', expected one of " + names);
 }
 
 Placement placementOf(const Part& part, std::uint32_t index) {
@@ -69,12 +70,24 @@ Placement placementOf(const Part& part, std::uint32_t index) {
   return place;
 }
 
+/// Removes the placements that belong to an instance or assembly. @throws std::invalid_argument if there are none
+void leaveOut(const Part& part, const std::string& from, const std::string& name, std::vector<Placement>& placements) {
+  refuseAmbiguous(part, "without", name);
+  const auto named = [&](const Placement& place) { return belongs(part, place.instance, name); };
+  if (std::erase_if(placements, named) > 0) return;
+  for (std::uint32_t i = 0; i < part.instances.size(); ++i)
+    if (belongs(part, i, name))
+      throw std::invalid_argument("without: '" + name + "' is not in '" + from + "', from which it is to be left out");
+  failUnknown(part, "without", name);
+}
+
 }  // namespace
 
-std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count) {
+std::vector<Placement> placementsOf(const Part& part, const ModelOptions& options, std::uint32_t& feature_count) {
+  const std::string& wanted = options.instance;
   std::vector<Placement> placements;
   std::uint64_t features = 0;
-  if (!wanted.empty()) refuseAmbiguous(part, wanted);
+  if (!wanted.empty()) refuseAmbiguous(part, "instance", wanted);
   for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
     if (part.instances[i].body == kNone) continue;
     const Body& body = part.bodies[part.instances[i].body];
@@ -88,9 +101,12 @@ std::vector<Placement> placementsOf(const Part& part, const std::string& wanted,
       throw std::invalid_argument("the part has more than 4,294,967,294 faces over all instances, expected fewer");
   }
   feature_count = static_cast<std::uint32_t>(features);
-  if (!placements.empty()) return placements;
-  if (wanted.empty()) throw std::invalid_argument("the part has neither faces nor triangles, expected at least one");
-  failUnknown(part, wanted);
+  if (placements.empty() && !wanted.empty()) failUnknown(part, "instance", wanted);
+  if (placements.empty())
+    throw std::invalid_argument("the part has neither faces nor triangles, expected at least one");
+  for (const std::string& name : options.without) leaveOut(part, wanted, name, placements);
+  if (placements.empty()) throw std::invalid_argument("without: leaves out everything, expected some of the instances");
+  return placements;
 }
 
 }  // namespace hapticd::brep
