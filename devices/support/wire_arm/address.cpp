@@ -2,13 +2,21 @@
 #include "wire_arm/address.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 namespace hapticd::wire_arm {
 namespace {
 
+/// Returns whether a text is a number from 1 to 999 as the kernel writes it.
 bool isNumber(std::string_view text) noexcept {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  constexpr size_t kMost = 3;
+  return !text.empty() && text.size() <= kMost && text[0] != '0' &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool isHexadecimal(std::string_view text) noexcept {
+  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
 }  // namespace
@@ -39,7 +47,13 @@ std::string notOpened(std::string_view bus, const Address& address, const std::s
          "plug it in and switch it on; hapticd device list shows what is there";
 }
 
+bool isUsbId(std::string_view text) noexcept {
+  return text.size() == 9 && text[4] == ':' && isHexadecimal(text.substr(0, 4)) && isHexadecimal(text.substr(5));
+}
+
 bool isUsbPort(std::string_view text) noexcept {
+  constexpr auto kDeepest = 7;
+  if (std::count(text.begin(), text.end(), '.') >= kDeepest) return false;
   const size_t dash = text.find('-');
   if (dash == std::string_view::npos || !isNumber(text.substr(0, dash))) return false;
   for (std::string_view rest = text.substr(dash + 1);;) {
