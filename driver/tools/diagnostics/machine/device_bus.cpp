@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "base/os.hpp"
 
@@ -48,9 +50,17 @@ bool fits(const KnownDevice& known, const std::string& id) {
   return wanted.ends_with(':') ? id.starts_with(wanted) : id == wanted;
 }
 
-const KnownDevice* find(const std::vector<KnownDevice>& all, const std::string& id) {
-  const auto at = std::find_if(all.begin(), all.end(), [&](const KnownDevice& known) { return fits(known, id); });
-  return at == all.end() ? nullptr : &*at;
+/// Finds what a device is by its id; several arms of one kind differ by serial number or port.
+std::optional<KnownDevice> find(const std::vector<KnownDevice>& all, const BusDevice& device) {
+  std::optional<KnownDevice> like;
+  for (const KnownDevice& known : all) {
+    if (!fits(known, device.id)) continue;
+    const bool other =
+        (!known.serial.empty() && known.serial != device.serial) || (!known.port.empty() && known.port != device.port);
+    if (!other) return known;
+    if (!like) like = known, like->name = "like " + known.name;
+  }
+  return like;
 }
 
 /// Returns the node of a USB device; "" if its numbers cannot be read.
@@ -67,14 +77,16 @@ void scanUsb(const std::vector<KnownDevice>& own, const fs::path& sys, const fs:
              std::vector<BusDevice>& found) {
   for (const fs::path& device : sorted(sys / "bus/usb/devices")) {
     const std::string id = lineOf(device / "idVendor") + ":" + lineOf(device / "idProduct");
-    const KnownDevice* known = find(own, id);
-    if (known == nullptr) known = find(usual(), id);
-    if (known == nullptr) continue;
     const fs::path node = dev / usbNode(device);
     const std::string port = device.filename().string(), product = lineOf(device / "product");
-    found.push_back({"usb " + port, id, lineOf(device / "serial"), port,
-                     product.empty() ? known->name : known->name + " \"" + product + "\"", known->module, node.string(),
-                     access(node.c_str(), R_OK | W_OK) == 0});
+    BusDevice one{"usb " + port, id, lineOf(device / "serial"), port, "", "", node.string(), false};
+    auto known = find(own, one);
+    if (!known) known = find(usual(), one);
+    if (!known) continue;
+    one.product = product.empty() ? known->name : known->name + " \"" + product + "\"";
+    one.module = known->module;
+    one.may_open = access(node.c_str(), R_OK | W_OK) == 0;
+    found.push_back(std::move(one));
   }
 }
 
