@@ -11,6 +11,8 @@ using contact::Followed;
 using contact::Foot;
 using Eigen::Vector3d;
 
+constexpr double kLow = 1e-5;  ///< [m] no hand feels a lower step
+
 /// Finds the bodies whose boxes the probe has pressed through at a joint, since bodies may lie on top of each other.
 /// Returns how many there are.
 int Tracer::bodiesAt(const Joint& joint, Places& places) const noexcept {
@@ -53,7 +55,7 @@ bool Tracer::goOnTo(std::uint32_t place, double side, const Joint& joint, const 
   constexpr double kAhead = 4;      // in steps
   constexpr double kBeside = 1e-3;  // share of the way of the tick: on the edge itself, rounding decides on the face
   const double tick = joint.way.norm(), far = std::max(tick, kAhead * joint.up);
-  for (const double ahead : {tick, kAhead * joint.up, 0.0}) {
+  for (const double ahead : {tick, kAhead * kLow, kAhead * joint.up, 0.0}) {
     double distance = 0;
     const Held next = faceAhead(place, side, joint, joint.on + ahead * joint.way.normalized(), distance);
     if (!(distance <= std::max(joint.up, joint.depth) + far)) return false;  // it is so near at none of these places
@@ -70,14 +72,16 @@ bool Tracer::goOnTo(std::uint32_t place, double side, const Joint& joint, const 
 /// come in through the wall that the first body covers: this hidden wall would stop the hand, and the surface would let
 /// go of it. Returns false, and leaves the contact, if there is no such face. A step up has a wall that is not hidden.
 bool Tracer::goOnFlush(double side, const Vector3d& p, Foot& foot) noexcept {
-  constexpr double kStep = 0.25;  // a step up is none if it is lower than this share of the way of the tick
-  constexpr double kLow = 1e-5;   // [m] or lower than this, which no hand feels: parts of a file may be so far off
+  // A step up is none if it is lower than a share of the way of the tick, or than what no hand feels, since parts of a
+  // file may be so far off. A hand that presses deep feels it as a small step of the force.
+  constexpr double kStep = 0.25, kOfDepth = 0.25, kHighest = 1e-4;  // [m]
   const Held before = held_;
   if (!model().placements()[before.place].solid || !(last_normal_.squaredNorm() > 0)) return false;
   const double depth = last_normal_.dot(last_foot_ - p);
   if (!(depth > 0)) return false;  // it came out in front of the face
   const Vector3d move = p - last_p_, way = move - move.dot(last_normal_) * last_normal_;
-  const double up = std::max({model().part().tolerance, kLow, kStep * way.norm()});
+  const double up =
+      std::max({model().part().tolerance, kLow, kStep * way.norm(), std::min(kOfDepth * depth, kHighest)});
   const Joint joint{p + depth * last_normal_, way, depth, up};
   Places places;
   const int count = bodiesAt(joint, places);
