@@ -16,7 +16,7 @@ namespace hapticd::record {
 /// The work of one model on one probe that is in contact with it.
 class ContactWork {
  public:
-  static constexpr double kSeen = 0.02;   ///< [s] a hand's way in a longer time is no straight line: nobody saw it
+  static constexpr double kSeen = 0.02;    ///< [s] a hand's way in a longer time is no straight line: nobody saw it
   static constexpr double kPeriods = 1.5;  ///< but every tick of a slow servo counts, if it is not much too late
 
   /// @param period [s] of the servo
@@ -51,7 +51,7 @@ class ContactWork {
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), position_ = Eigen::Vector3d::Zero();
   uint64_t next_ = UINT64_MAX;  // number of the tick after the last one
   bool was_inside_ = false;     // in the last tick
-  double seen_;  // [s]
+  double seen_;                 // [s]
   double given_ = 0, taken_ = 0, began_ = 0;
 };
 
