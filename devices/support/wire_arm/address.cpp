@@ -25,6 +25,7 @@ std::string textOf(const Address& address) {
   char ids[16];
   std::snprintf(ids, sizeof ids, "%04x:%04x", address.vendor, address.product);
   return ids + (address.serial.empty() ? "" : " serial " + address.serial) +
+         (address.interface < 0 ? "" : " interface " + std::to_string(address.interface)) +
          (address.port.empty() ? "" : " at port " + address.port);
 }
 
@@ -42,7 +43,7 @@ std::string notOpened(std::string_view bus, const Address& address, const std::s
            "hapticd doctor says what is missing";
   if (!others.empty())
     return who + " not found; devices with this id: " + others + kOff +
-           "correct usb.serial or usb.port in the device file";
+           "correct usb.serial, usb.port or usb.interface in the device file";
   return who + " not found\n  no device with this id is plugged in" + kOff +
          "plug it in and switch it on; hapticd device list shows what is there";
 }

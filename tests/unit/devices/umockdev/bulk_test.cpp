@@ -93,7 +93,7 @@ TEST_F(BulkTest, AnotherArmThatCannotBeOpenedIsNotTheOneThatIsMissing) {
   const auto missing = make("", "1-4")->open();
   ASSERT_FALSE(missing);
   for (const char* words : {"at port 1-4 not found; devices with this id: ", "one at port 1-1 that cannot be opened: ",
-                            "serial B2 at port 1-2", "correct usb.serial or usb.port"})
+                            "serial B2 at port 1-2", "correct usb.serial, usb.port or usb.interface"})
     EXPECT_NE(missing.error().find(words), std::string::npos) << missing.error();
   const auto meant = make("", "1-1")->open();
   ASSERT_FALSE(meant);
