@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstdio>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "base/os.hpp"
@@ -63,13 +65,18 @@ std::optional<KnownDevice> find(const std::vector<KnownDevice>& all, const BusDe
   return like;
 }
 
+std::optional<int> numberIn(const fs::path& file) {
+  const std::string text = lineOf(file);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
 /// Returns the node of a USB device; "" if its numbers cannot be read.
 std::string usbNode(const fs::path& device) {
-  int bus = 0, number = 0;
+  const std::optional<int> bus = numberIn(device / "busnum"), number = numberIn(device / "devnum");
   char node[32] = "";
-  if (std::sscanf(lineOf(device / "busnum").c_str(), "%d", &bus) == 1 &&
-      std::sscanf(lineOf(device / "devnum").c_str(), "%d", &number) == 1)
-    std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", bus, number);
+  if (bus && number) std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", *bus, *number);
   return node;
 }
 
