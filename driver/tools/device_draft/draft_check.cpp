@@ -79,7 +79,8 @@ std::string wrongIn(const DeviceDraft& draft) {
     return "--report-id " + std::to_string(draft.report_id) + ": expected 1 to 255, or 0 if reports have none";
   if (draft.buttons < 0 || draft.buttons > 32)
     return "--buttons " + std::to_string(draft.buttons) + ": expected 0 to 32";
-  if (!isUsbId(draft.id)) return "--id " + draft.id + ": expected vendor:product, four hexadecimal digits each, such as 1234:0006";
+  if (!isUsbId(draft.id))
+    return "--id " + draft.id + ": expected vendor:product, four hexadecimal digits each, such as 1234:0006";
   return "";
 }
 
