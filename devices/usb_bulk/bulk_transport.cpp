@@ -169,7 +169,9 @@ class BulkTransport final : public Transport {
     const std::string port = portOf(device);
     if (const int error = libusb_open(device, &handle_); error != 0) {
       handle_ = nullptr;
-      refused = std::string("cannot be opened: ") + libusb_strerror(static_cast<libusb_error>(error));
+      const std::string why = std::string("cannot be opened: ") + libusb_strerror(static_cast<libusb_error>(error));
+      others += (others.empty() ? "one at port " : ", one at port ") + port + " that " + why;
+      if (address.port.empty() || address.port == port) refused = why;
       return;
     }
     const std::string serial = text(about.iSerialNumber);
@@ -182,7 +184,9 @@ class BulkTransport final : public Transport {
     (void)libusb_set_auto_detach_kernel_driver(handle_, 1);
     interface_ = std::max(0, address.interface);
     if (const int error = libusb_claim_interface(handle_, interface_); error != 0) {
-      refused = std::string("is in use: ") + libusb_strerror(static_cast<libusb_error>(error));
+      refused = (error == LIBUSB_ERROR_BUSY ? std::string("is in use: ")
+                                            : "does not give its interface " + std::to_string(interface_) + ": ") +
+                libusb_strerror(static_cast<libusb_error>(error));
       libusb_close(handle_);
       handle_ = nullptr;
       return;

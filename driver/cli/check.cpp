@@ -10,6 +10,7 @@
 #include "cli/support/colour.hpp"
 #include "cli/support/command.hpp"
 #include "diagnostics/check/judge_file.hpp"
+#include "document/alike.hpp"
 #include "scene/load.hpp"
 
 namespace hapticd::cli {
@@ -33,7 +34,7 @@ int printSchema(const std::string& format) {
 
 void print(const CheckResult& result, bool quiet) {
   printProblems(result.problems, stdout);
-  printWarnings(result.warnings, stdout);
+  printWarnings(document::withoutAlike(result.warnings), stdout);
   if (result.problems.empty() && !quiet)
     std::printf("%s: %s\n", result.file.c_str(), coloured("ok", Colour::kGood).c_str());
 }

@@ -2,13 +2,21 @@
 #include "wire_arm/address.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 namespace hapticd::wire_arm {
 namespace {
 
+/// Returns whether a text is a number from 1 to 999 as the kernel writes it.
 bool isNumber(std::string_view text) noexcept {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  constexpr size_t kMost = 3;
+  return !text.empty() && text.size() <= kMost && text[0] != '0' &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool isHexadecimal(std::string_view text) noexcept {
+  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
 }  // namespace
@@ -17,6 +25,7 @@ std::string textOf(const Address& address) {
   char ids[16];
   std::snprintf(ids, sizeof ids, "%04x:%04x", address.vendor, address.product);
   return ids + (address.serial.empty() ? "" : " serial " + address.serial) +
+         (address.interface < 0 ? "" : " interface " + std::to_string(address.interface)) +
          (address.port.empty() ? "" : " at port " + address.port);
 }
 
@@ -34,12 +43,18 @@ std::string notOpened(std::string_view bus, const Address& address, const std::s
            "hapticd doctor says what is missing";
   if (!others.empty())
     return who + " not found; devices with this id: " + others + kOff +
-           "correct usb.serial or usb.port in the device file";
+           "correct usb.serial, usb.port or usb.interface in the device file";
   return who + " not found\n  no device with this id is plugged in" + kOff +
          "plug it in and switch it on; hapticd device list shows what is there";
 }
 
+bool isUsbId(std::string_view text) noexcept {
+  return text.size() == 9 && text[4] == ':' && isHexadecimal(text.substr(0, 4)) && isHexadecimal(text.substr(5));
+}
+
 bool isUsbPort(std::string_view text) noexcept {
+  constexpr auto kDeepest = 7;
+  if (std::count(text.begin(), text.end(), '.') >= kDeepest) return false;
   const size_t dash = text.find('-');
   if (dash == std::string_view::npos || !isNumber(text.substr(0, dash))) return false;
   for (std::string_view rest = text.substr(dash + 1);;) {

@@ -27,7 +27,11 @@ std::string factsOf(const std::string& serial, const std::string& port);
 std::string notOpened(std::string_view bus, const Address& address, const std::string& refused,
                       const std::string& others);
 
-/// [any] Returns whether a text is the kernel's name of a USB port: bus, then the ports of the hubs, such as "1-2.3".
+/// [any] Returns whether a text is a vendor and a product id as every program prints them, such as "1234:0006".
+bool isUsbId(std::string_view text) noexcept;
+
+/// [any] Returns whether a text is the kernel's name of a USB port: bus, then the ports of up to seven hubs, such as
+/// "1-2.3".
 bool isUsbPort(std::string_view text) noexcept;
 
 /// [any] Returns the USB port of a device from its path in /sys, which contains an interface such as "1-2.3:1.0"; ""

@@ -12,14 +12,18 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* kFormat = "hapticd-calibration/1";
 
+/// These characters come from the device, and must not change the folder.
+std::string asFileName(std::string text) {
+  for (char& c : text)
+    if (!((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'))) c = '_';
+  return text;
+}
+
 fs::path fileOf(const fs::path& folder, const Address& address, const Identity& identity) {
   char ids[16];
   std::snprintf(ids, sizeof ids, "%04x-%04x-", address.vendor, address.product);
-  std::string name = ids;
-  // These characters come from the device, and must not change the folder.
-  for (const char c : identity.serial + address.port)
-    name += (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ? c : '_';
-  return folder / (name + ".calibration");
+  const std::string port = address.port.empty() ? "" : "@" + asFileName(address.port);
+  return folder / (ids + asFileName(identity.serial) + port + ".calibration");
 }
 
 std::string bootId() {

@@ -120,9 +120,9 @@ struct ParameterTable {
 inline Address addressOf(const Parameters& p) {
   Address address;
   unsigned vendor = 0, product = 0;
-  int used = 0;
-  if (std::sscanf(p.id.c_str(), "%4x:%4x%n", &vendor, &product, &used) != 2 || static_cast<size_t>(used) != p.id.size())
-    throw std::invalid_argument("usb.id: \"" + p.id + "\", expected vendor:product such as \"1234:0006\"");
+  if (!isUsbId(p.id) || std::sscanf(p.id.c_str(), "%4x:%4x", &vendor, &product) != 2)
+    throw std::invalid_argument("usb.id: \"" + p.id +
+                                "\", expected vendor:product such as \"1234:0006\", of four digits each");
   address.vendor = static_cast<uint16_t>(vendor);
   address.product = static_cast<uint16_t>(product);
   address.interface = p.interface;

@@ -8,6 +8,7 @@ namespace hapticd::wire_arm {
 namespace {
 
 constexpr double kGap = 5;          ///< [reports] see Session::longGap()
+constexpr double kLonger = 1.5;     ///< a gap that is so much longer than those before it is long
 constexpr uint64_t kFewBad = 4;     ///< fewer bad reports in Session::kRateWindow do not make an arm too slow
 constexpr double kOldReports = 64;  ///< most reports that an arm, a hub or the kernel may keep and send again
 
@@ -28,6 +29,20 @@ double cycleOf(const codec::Field& field) noexcept {
 bool isOld(double last, double number, double cycle, double old) noexcept {
   const double behind = last >= number ? last - number : last - number + cycle;
   return behind <= std::min(old, cycle / 4);
+}
+
+/// Returns the trouble of an arm whose reports are like this one; kNone if they say nothing.
+Trouble troubleOf(codec::Verdict verdict) noexcept {
+  switch (verdict) {
+    case codec::Verdict::kWrongSize:
+      return Trouble::kShort;
+    case codec::Verdict::kCorrupt:
+      return Trouble::kCorrupt;
+    case codec::Verdict::kTorn:
+      return Trouble::kTorn;
+    default:
+      return Trouble::kNone;
+  }
 }
 
 }  // namespace
@@ -92,7 +107,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   reports_ = 0;
   attached_at_ = sent_;
   good_at_ = now;
-  bad_at_ = 0;
+  bad_at_ = named_at_ = 0;
   // The arm does not count as healthy yet. It begins with a trouble, which ends after some time of good reports.
   raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
 }
@@ -103,6 +118,7 @@ void Session::lose(Nanoseconds now, Trouble trouble) noexcept {
 }
 
 void Session::raise(Nanoseconds now, Trouble trouble) noexcept {
+  if (trouble != sample_.trouble) named_at_ = trouble == last_bad_ ? bad_at_ : 0;
   sample_.trouble = trouble;
   trouble_at_ = now;
 }
@@ -118,7 +134,8 @@ bool Session::receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept 
 void Session::reject(Nanoseconds now, codec::Verdict verdict) noexcept {
   ++bad_reports_;
   bad_at_ = now;
-  last_bad_ = verdict;
+  last_bad_ = troubleOf(verdict);
+  if (last_bad_ != Trouble::kNone && last_bad_ == sample_.trouble) named_at_ = now;
 }
 
 bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
@@ -246,12 +263,22 @@ double Session::longGap() const noexcept {
   return std::min(kGap / wire_.rate, settings_.health.stale / 2);
 }
 
-/// Returns what comes in place of new reports since the given time.
+/// Returns how long [s] new reports of this arm are away before it is silent and not slow. Those of a slow arm are as
+/// far from each other all the time.
+double Session::longGapHere() const noexcept {
+  double usual = 0;
+  for (size_t i = 1; i < kRateWindow; ++i)
+    usual = std::max(
+        usual, seconds(arrivals_[(reports_ + i - 1) % kRateWindow].at, arrivals_[(reports_ + i) % kRateWindow].at));
+  return std::max(longGap(), kLonger * usual);
+}
+
+/// Returns what comes in place of new reports since the given time. Of several kinds of bad reports, the one that has
+/// given the trouble its name keeps it while it comes.
 Trouble Session::whatComes(Nanoseconds since) const noexcept {
-  if (bad_at_ > since) {
-    if (last_bad_ == codec::Verdict::kWrongSize) return Trouble::kShort;
-    if (last_bad_ == codec::Verdict::kCorrupt) return Trouble::kCorrupt;
-    if (last_bad_ == codec::Verdict::kTorn) return Trouble::kTorn;
+  if (bad_at_ > since && last_bad_ != Trouble::kNone) {
+    const bool comes = named_at_ > since && seconds(named_at_, bad_at_) < settings_.health.stale;
+    return comes ? sample_.trouble : last_bad_;
   }
   const double gap = seconds(good_at_, old_at_);  // a report that comes twice is no stream of old ones
   return gap > longGap() ? Trouble::kOld : Trouble::kStale;
@@ -266,7 +293,7 @@ bool Session::watch(Nanoseconds now) noexcept {
     raise(now, named ? before : whatComes(good_at_));
   } else if (tooSlow(now)) {
     const Arrival& oldest = arrivals_[reports_ % kRateWindow];
-    const bool slow = gap < longGap() && bad_reports_ < oldest.bad + kFewBad;
+    const bool slow = gap < longGapHere() && bad_reports_ < oldest.bad + kFewBad;
     const Trouble found = slow ? Trouble::kSlow : whatComes(oldest.at);
     if (before == Trouble::kNone || before == Trouble::kSlow || before == found) raise(now, found);
   }

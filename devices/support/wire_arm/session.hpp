@@ -103,6 +103,7 @@ class Session {
   double gain(Nanoseconds now, bool healthy) noexcept;
   bool tooSlow(Nanoseconds now) noexcept;
   double longGap() const noexcept;
+  double longGapHere() const noexcept;
   Trouble whatComes(Nanoseconds since) const noexcept;
   void raise(Nanoseconds now, Trouble trouble) noexcept;
   void publish(Nanoseconds now, const codec::State& state) noexcept;
@@ -122,11 +123,12 @@ class Session {
   std::array<uint64_t, kRateWindow> answered_{};  ///< number of reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, bad_at_ = 0, old_at_ = 0, trouble_at_ = 0, healthy_at_ = 0, zeroless_at_ = 0;
+  Nanoseconds named_at_ = 0;  ///< when the last bad report came that is of the kind of the present trouble; 0: none
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
   bool clock_tells_ = false;  ///< the arm's clock has a new value in each report
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
-  codec::Verdict last_bad_ = codec::Verdict::kGood;
+  Trouble last_bad_ = Trouble::kNone;  ///< what the last bad report says
 };
 
 }  // namespace hapticd::wire_arm

@@ -98,8 +98,12 @@ int listWith(const std::vector<std::string>& files, bool json) {
   for (const std::string& file : files) {
     const auto device = loadDeviceOrReport(file);
     if (!device) return kBadInput;
-    if (const scene::Value* id = givenIn(device->parameters, "usb.id"); id != nullptr)
-      own.push_back({id->text, device->name, device->module});
+    const auto given = [&](const char* key) {
+      const scene::Value* value = givenIn(device->parameters, key);
+      return value != nullptr ? value->text : "";
+    };
+    if (const std::string id = given("usb.id"); !id.empty())
+      own.push_back({id, device->name, device->module, given("usb.serial"), given("usb.port")});
   }
   const std::vector<BusDevice> plugged_in = scanBuses(own);
   return json ? printJson(listJson(plugged_in)) : list(plugged_in);

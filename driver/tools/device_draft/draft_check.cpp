@@ -50,7 +50,7 @@ bool isUsbId(std::string_view id) {
   const auto isNumber = [](std::string_view digits) {
     uint16_t number = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
-    return digits.size() <= 4 && error == std::errc() && end == digits.data() + digits.size();
+    return digits.size() == 4 && error == std::errc() && end == digits.data() + digits.size();
   };
   const size_t colon = id.find(':');
   return colon != id.npos && isNumber(id.substr(0, colon)) && isNumber(id.substr(colon + 1));
@@ -79,7 +79,8 @@ std::string wrongIn(const DeviceDraft& draft) {
     return "--report-id " + std::to_string(draft.report_id) + ": expected 1 to 255, or 0 if reports have none";
   if (draft.buttons < 0 || draft.buttons > 32)
     return "--buttons " + std::to_string(draft.buttons) + ": expected 0 to 32";
-  if (!isUsbId(draft.id)) return "--id " + draft.id + ": expected vendor:product, hexadecimal, such as 1234:0006";
+  if (!isUsbId(draft.id))
+    return "--id " + draft.id + ": expected vendor:product, four hexadecimal digits each, such as 1234:0006";
   return "";
 }
 

@@ -10,10 +10,12 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "edge_steps.hpp"
 #include "kernels/brep/contact/tracer.hpp"
@@ -309,12 +311,21 @@ void measure(Part part, const char* name, const char* source = nullptr) {
 }  // namespace
 }  // namespace hapticd::bench
 
-int main(int count, char** files) {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of triangles\n"
+    "       bench_parts --balls           the balls alone\n"
+    "       bench_parts --four FILE.hpart an assembly of four of them\n"
+    "       bench_parts --edges FILE.hpart...\n"
+    "       bench_parts FILE.hpart --occt FILE.step ...\n";
+
+void measureAll(int count, char** files) {
   using namespace hapticd;
   if (count == 2 && std::string(files[1]) == "--balls") {
     bench::measure(brep::samples::bumpyBall(100000), "bumpy ball");
     bench::measure(brep::samples::bumpyBall(1000000), "bumpy ball");
-    return 0;
+    return;
   }
   if (count < 2) {
     bench::measure(brep::samples::bracket(), "bracket");
@@ -326,7 +337,7 @@ int main(int count, char** files) {
   }
   if (count > 2 && std::string(files[1]) == "--edges") {
     for (int i = 2; i < count; ++i) bench::measureEdgeSteps(brep::Model(bench::readFile(files[i])));
-    return 0;
+    return;
   }
   const bool four = count == 3 && std::string(files[1]) == "--four";
   for (int i = four ? 2 : 1; i < count; ++i) {
@@ -335,5 +346,20 @@ int main(int count, char** files) {
     const bool beside = i + 2 < count && std::string(files[i + 1]) == "--occt";
     bench::measure(std::move(part), files[i], beside ? files[i + 2] : nullptr);
     if (beside) i += 2;
+  }
+}
+
+}  // namespace
+
+int main(int count, char** files) {
+  const std::string first = count > 1 ? files[1] : "";
+  const bool known = !first.starts_with("-") || first == "--balls" || first == "--four" || first == "--edges";
+  const bool help = first == "--help" || first == "-h";
+  if (help || !known) return std::fputs(kUsage, help ? stdout : stderr), help ? 0 : 2;
+  try {
+    measureAll(count, files);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "bench_parts: %s\n", e.what());
+    return 1;
   }
 }

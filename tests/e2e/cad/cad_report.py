@@ -151,6 +151,7 @@ def thin_walls():
 def counts():
     _, _, info = told("trough.brep")
     check("one face is one face", "open, 1 face, 4 edges" in info, info)
+    check("and has nothing to be sewn to", "sewn" not in info, info)
 
 
 def poses():

@@ -35,6 +35,12 @@ with tempfile.TemporaryDirectory() as folder:
     check("two serial numbers do", WORDS not in told(known, 'id: "1234:0006", serial: B2'))
     check("or two ports", WORDS not in told('id: "1234:0006", port: 1-2', 'id: "1234:0006", port: 1-2.1'))
     check("a port is bus and ports", 'usb.port: "2", expected bus and ports such as "1-2.3"' in told('id: "1234:0006", port: "2"', known))
+    for port in ("0-0", "01-2", "1-02", "1-2.3.4.5.6.7.8.9", "1-2.", "9999-1"):
+        check(f"no port is {port}", f'usb.port: "{port}", expected bus and ports' in told(f'id: "1234:0006", port: "{port}"', known))
+    check("the deepest one is", "expected bus" not in told('id: "1234:0006", port: 1-2.3.4.5.6.7.8', known))
+    check("an id is written as it is listed", 'usb.id: "4d8:3f", expected vendor:product such as "1234:0006", of four digits each' in told('id: "4d8:3f"', known))
+    mixed = told(known, 'id: "1234:0006", port: 1-2')
+    check("a serial number and a port may be one arm, and the advice tells two apart", "both with usb.serial or, if one has no serial number, both with usb.port" in mixed, mixed)
     check("and so do two ids", WORDS not in told('id: "1234:0006"', 'id: "1234:0007"'))
     check("or two interfaces", WORDS not in told('id: "1234:0006", interface: 0', 'id: "1234:0006", interface: 1'))
 finish()

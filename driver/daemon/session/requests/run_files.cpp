@@ -161,7 +161,11 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
 
 RunFiles::~RunFiles() {
   const bool began = runner_ != nullptr || ended_;
-  end();
+  try {
+    end();
+  } catch (...) {  // without memory, the black box may stay behind; the name must not
+    ended_ = true;
+  }
   if (lock_ < 0) return;
   // Removes files that the set-up made for a run that was then refused.
   if (!began)
@@ -195,7 +199,11 @@ void RunFiles::serve(Runner& runner, const RequestHandler::LoadScene& load, host
   service.news = [this](const control::Peer& peer) { return handler_->news(peer); };
   service.urgent = [this](const control::Peer& peer, const std::string& line) { return handler_->urgent(peer, line); };
   service.left = [this](const control::Peer& peer) { handler_->left(peer); };
-  server_->start(std::move(service));
+  if (const std::error_code code = server_->start(std::move(service))) {
+    server_.reset();
+    log::write(HSP_LOG_WARNING, "", socket + ": cannot be served, so nothing can watch this run: " + code.message());
+    return;
+  }
   log::write(HSP_LOG_INFO, "", "runs as " + name_ + ": " + contents(runner.scene()) + "; socket " + socket);
 }
 

@@ -25,7 +25,7 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
   names_.resize(models_.size());
   plugins_.resize(models_.size());
   libraries_.resize(models_.size());
-  work_.resize(models_.size() * scene.devices.size());
+  work_.resize(models_.size() * scene.devices.size(), record::ContactWork(1 / rate_));
   if (scene.devices.size() < 2) return;
   for (const scene::Device& device : scene.devices) devices_.push_back(device.name);
   by_arm_.resize(models_.size() * devices_.size());
@@ -62,7 +62,7 @@ void Telemetry::name(uint32_t place, const std::string& name, const std::string&
     left_.push_back(reportOf(place));
   }
   models_[place] = {};
-  for (size_t i = 0; i < stops_.size(); ++i) work_[place * stops_.size() + i] = {};
+  for (size_t i = 0; i < stops_.size(); ++i) work_[place * stops_.size() + i] = record::ContactWork(1 / rate_);
   for (size_t i = 0; i < devices_.size(); ++i) by_arm_[place * devices_.size() + i] = {};
   names_[place] = name;
   plugins_[place] = plugin;

@@ -39,8 +39,8 @@ document::Problems likeArms(const scene::Scene& scene) {
       document::report(
           warnings, givenIn(second.parameters, "usb.id")->place, "parameters.usb.serial",
           fmt::format("the same USB device may be {} or {}, so the two hands may change places from run "
-                      "to run; expected a file for each arm, with its usb.serial or, if they have no serial "
-                      "numbers, its usb.port: hapticd device list prints both",
+                      "to run; expected a file for each arm, both with usb.serial or, if one has no serial number, "
+                      "both with usb.port: hapticd device list FILE... prints them",
                       first.name, second.name));
       break;
     }

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstdio>
+#include <optional>
+#include <system_error>
+#include <utility>
 
 #include "base/os.hpp"
 
@@ -48,18 +52,31 @@ bool fits(const KnownDevice& known, const std::string& id) {
   return wanted.ends_with(':') ? id.starts_with(wanted) : id == wanted;
 }
 
-const KnownDevice* find(const std::vector<KnownDevice>& all, const std::string& id) {
-  const auto at = std::find_if(all.begin(), all.end(), [&](const KnownDevice& known) { return fits(known, id); });
-  return at == all.end() ? nullptr : &*at;
+/// Finds what a device is by its id; several arms of one kind differ by serial number or port.
+std::optional<KnownDevice> find(const std::vector<KnownDevice>& all, const BusDevice& device) {
+  std::optional<KnownDevice> like;
+  for (const KnownDevice& known : all) {
+    if (!fits(known, device.id)) continue;
+    const bool other =
+        (!known.serial.empty() && known.serial != device.serial) || (!known.port.empty() && known.port != device.port);
+    if (!other) return known;
+    if (!like) like = known, like->name = "like " + known.name;
+  }
+  return like;
+}
+
+std::optional<int> numberIn(const fs::path& file) {
+  const std::string text = lineOf(file);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
 /// Returns the node of a USB device; "" if its numbers cannot be read.
 std::string usbNode(const fs::path& device) {
-  int bus = 0, number = 0;
+  const std::optional<int> bus = numberIn(device / "busnum"), number = numberIn(device / "devnum");
   char node[32] = "";
-  if (std::sscanf(lineOf(device / "busnum").c_str(), "%d", &bus) == 1 &&
-      std::sscanf(lineOf(device / "devnum").c_str(), "%d", &number) == 1)
-    std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", bus, number);
+  if (bus && number) std::snprintf(node, sizeof node, "bus/usb/%03d/%03d", *bus, *number);
   return node;
 }
 
@@ -67,14 +84,16 @@ void scanUsb(const std::vector<KnownDevice>& own, const fs::path& sys, const fs:
              std::vector<BusDevice>& found) {
   for (const fs::path& device : sorted(sys / "bus/usb/devices")) {
     const std::string id = lineOf(device / "idVendor") + ":" + lineOf(device / "idProduct");
-    const KnownDevice* known = find(own, id);
-    if (known == nullptr) known = find(usual(), id);
-    if (known == nullptr) continue;
     const fs::path node = dev / usbNode(device);
     const std::string port = device.filename().string(), product = lineOf(device / "product");
-    found.push_back({"usb " + port, id, lineOf(device / "serial"), port,
-                     product.empty() ? known->name : known->name + " \"" + product + "\"", known->module, node.string(),
-                     access(node.c_str(), R_OK | W_OK) == 0});
+    BusDevice one{"usb " + port, id, lineOf(device / "serial"), port, "", "", node.string(), false};
+    auto known = find(own, one);
+    if (!known) known = find(usual(), one);
+    if (!known) continue;
+    one.product = product.empty() ? known->name : known->name + " \"" + product + "\"";
+    one.module = known->module;
+    one.may_open = access(node.c_str(), R_OK | W_OK) == 0;
+    found.push_back(std::move(one));
   }
 }
 

@@ -8,9 +8,11 @@
 namespace hapticd::diagnostics {
 
 struct KnownDevice {
-  std::string id;      ///< "0403:cb48"; without a product, such as "2988:", each one of the vendor
-  std::string name;    ///< of the product
-  std::string module;  ///< device module that supports it; "" if none does
+  std::string id;        ///< "0403:cb48"; without a product, such as "2988:", each one of the vendor
+  std::string name;      ///< of the product
+  std::string module;    ///< device module that supports it; "" if none does
+  std::string serial{};  ///< serial number; "" for any
+  std::string port{};    ///< USB port; "" for any
 };
 
 struct BusDevice {
@@ -24,7 +26,8 @@ struct BusDevice {
   bool may_open = false;
 };
 
-/// [main] Returns the known devices that were found. @param own devices that are looked for besides the usual ones
+/// [main] Returns the known devices that were found. One of `own` whose serial number or port is another has no name
+/// but that it is like it. @param own devices that are looked for besides the usual ones
 /// @param sys "/sys", or another folder in tests; @param dev "/dev"
 std::vector<BusDevice> scanBuses(const std::vector<KnownDevice>& own = {}, const std::filesystem::path& sys = "/sys",
                                  const std::filesystem::path& dev = "/dev");

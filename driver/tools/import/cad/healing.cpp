@@ -110,6 +110,9 @@ TopoDS_Shape sewnFaces(const TopoDS_Shape& faces, const std::string& body, Colou
     steps.push_back(body + ": its loose faces could not be sewn within 10 s");
     return faces;
   }
+  TopExp_Explorer face(faces, TopAbs_FACE);
+  if (face.More()) face.Next();
+  if (!face.More()) return kept(seam, faces, colours);  // a single face has nothing to be sewn to
   char line[120];
   std::snprintf(line, sizeof line, ": loose faces sewn over gaps up to %.0e mm, %d edges stay free", seam.gap,
                 seam.free);

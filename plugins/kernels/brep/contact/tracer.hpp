@@ -3,6 +3,7 @@
 /// contact. Each probe needs its own Tracer; all can share the Model.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 
 #include "kernels/brep/contact/outside_bodies.hpp"
@@ -48,6 +49,14 @@ class Tracer {
     std::uint32_t face = kNone;  ///< index in the part; for meshes the triangle
     Hit hit;
   };
+  /// Where a held face ends, and another body may go on.
+  struct Joint {
+    Eigen::Vector3d on;   ///< [m] where the held face would be over the probe
+    Eigen::Vector3d way;  ///< [m] of the probe in this tick, along that face
+    double depth;         ///< [m] of the probe below `on`: no step down is higher
+    double up;            ///< [m] highest step up that is none
+  };
+  using Places = std::array<std::uint32_t, 16>;  ///< placements of bodies about a joint
 
   contact::Followed follow(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed followFace(double side, const Eigen::Vector3d& p) noexcept;
@@ -57,6 +66,11 @@ class Tracer {
   void slideAround(std::uint32_t vertex, const Eigen::Vector3d& p, Held& next) noexcept;
   bool slideAside(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
+  int bodiesAt(const Joint& joint, Places& places) const noexcept;
+  Held faceAhead(std::uint32_t place, double side, const Joint& joint, const Eigen::Vector3d& at,
+                 double& distance) noexcept;
+  bool goOnTo(std::uint32_t place, double side, const Joint& joint, const Eigen::Vector3d& p,
+              contact::Foot& foot) noexcept;
   bool goOnFlush(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
   void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The bulk transport and its I/O thread with the real libusb: open by serial number, push, stall, lose, find again.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <functional>
 
@@ -81,6 +82,33 @@ TEST_F(BulkTest, FindsTheArmByItsPortAmongTwo) {
   ASSERT_FALSE(missing);
   for (const char* words : {"1209:0006 at port 1-4 not found", "serial A1 at port 1-1", "serial B2 at port 1-2"})
     EXPECT_NE(missing.error().find(words), std::string::npos) << missing.error();
+}
+
+/// The user would look for the rights of the arm that is meant, which is not there.
+TEST_F(BulkTest, AnotherArmThatCannotBeOpenedIsNotTheOneThatIsMissing) {
+  PlayedUsb a(testbed, 0, left), b(testbed, 1, right);
+  a.plug();
+  b.plug();
+  ASSERT_EQ(::unlink((umockdev_testbed_get_root_dir(testbed) + std::string("/dev/bus/usb/001/002")).c_str()), 0);
+  const auto missing = make("", "1-4")->open();
+  ASSERT_FALSE(missing);
+  for (const char* words : {"at port 1-4 not found; devices with this id: ", "one at port 1-1 that cannot be opened: ",
+                            "serial B2 at port 1-2", "correct usb.serial, usb.port or usb.interface"})
+    EXPECT_NE(missing.error().find(words), std::string::npos) << missing.error();
+  const auto meant = make("", "1-1")->open();
+  ASSERT_FALSE(meant);
+  EXPECT_NE(meant.error().find("at port 1-1 cannot be opened: "), std::string::npos) << meant.error();
+  EXPECT_TRUE(make("B2")->open());
+}
+
+TEST_F(BulkTest, AnInterfaceThatDoesNotExistIsNotInUse) {
+  PlayedUsb a(testbed, 0, left);
+  a.plug();
+  LinkSettings s;
+  s.address.vendor = 0x1209, s.address.product = 0x0006, s.address.interface = 200;
+  const auto refused = Link(makeBulkTransport(), wire, std::move(s)).open();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().find("does not give its interface 200: "), std::string::npos) << refused.error();
 }
 
 TEST_F(BulkTest, UnpluggedIsNamedAndTheArmFoundAgain) {

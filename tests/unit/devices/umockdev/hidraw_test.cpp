@@ -66,6 +66,17 @@ TEST_F(HidrawTest, FindsTheArmByItsPortIfItHasNoSerialNumber) {
       << missing.error();
 }
 
+TEST_F(HidrawTest, AnInterfaceThatDoesNotExistIsNamed) {
+  emulator::PlayedHidraw a(testbed, 0, left, "A1");
+  a.plug();
+  LinkSettings s;
+  s.address.vendor = 0x1234, s.address.product = 0x0006, s.address.interface = 200;
+  const auto missing = Link(makeHidTransport(), wire, std::move(s)).open();
+  ASSERT_FALSE(missing);
+  for (const char* words : {"1234:0006 interface 200 not found; devices with this id: serial A1", "usb.interface"})
+    EXPECT_NE(missing.error().find(words), std::string::npos) << missing.error();
+}
+
 TEST_F(HidrawTest, AnArmInUseIsNotTakenTwice) {
   emulator::PlayedHidraw a(testbed, 0, left, "A1");
   a.plug();

@@ -238,5 +238,46 @@ TEST(Energy, AHandThatHoldsStillKeepsItsForceBesideAnother) {
   EXPECT_GT(least, .6 * alone);  // the other hand moves the surface
 }
 
+/// Returns what a hand gets in its last round over a pebble on which another one rests, after `presses`, each of which
+/// left far away in one tick [J].
+double gotAfter(int presses) {
+  constexpr int kRounds = 6;
+  Plugin pebble("pebble.yaml");
+  pebble.set("dynamics", kFelt);
+  pebble.activate(2);
+  const Vector3d still(0, 0, .0145), top(.004, 0, .0185), deep(.004, 0, .014), far(.004, 0, .03);
+  for (uint32_t i = 0; i < 2; ++i) pebble.search(i == 0 ? still : top, i);
+  Vector3d at = top, force = Vector3d::Zero();
+  double got = 0;
+  const auto go = [&](const Vector3d& to) {
+    const Vector3d next = forceOf(pebble.step({still, to})[1]);
+    got += std::max(0., .5 * (force + next).dot(to - at));
+    at = to, force = next;
+  };
+  const auto line = [&](const Vector3d& to) {
+    const Vector3d from = at;
+    const auto steps = static_cast<int>(std::ceil((to - from).norm() / 2e-5));
+    for (int i = 1; i <= steps; ++i) go(from + (to - from) * i / steps);
+  };
+  for (int i = 0; i < presses; ++i) {
+    line(deep);
+    go(far);
+    go(top);
+  }
+  for (int i = 0; i < kRounds; ++i) {
+    got = 0;
+    for (const Vector3d& corner : {Vector3d(.02, .02, .008), Vector3d(.0117, .0117, .006), deep, top}) line(corner);
+  }
+  return got;
+}
+
+/// A hand that leaves in one tick has got the work on the way to the surface. If nobody counted it, each such press
+/// would leave a credit with the account that all hands share, as long as one of them rests there.
+TEST(Energy, AHandThatLeavesInATickLeavesNoCredit) {
+  const double usual = gotAfter(0);
+  EXPECT_GT(usual, 1e-3);
+  EXPECT_NEAR(gotAfter(60), usual, 1e-3 * usual);
+}
+
 }  // namespace
 }  // namespace hapticd::test

@@ -267,6 +267,24 @@ TEST_F(LinkTest, APoseCalibrationHoldsUntilTheArmIsPluggedInAnew) {
   EXPECT_FALSE(loadZero(folder, Address{}, link->identity(), 3).known);
 }
 
+TEST_F(LinkTest, TwoArmsHaveTwoCalibrations) {
+  std::filesystem::remove_all(folder);
+  Address one, other;
+  const Address none;
+  one.port = "11-2", other.port = "1-2";
+  Identity a, a1, like_port;
+  const Identity nameless;
+  a.serial = "A", a1.serial = "A1", like_port.serial = "1-2";
+  ASSERT_TRUE(storeZero(folder, one, a, {1}, 1));
+  ASSERT_TRUE(storeZero(folder, other, a1, {2}, 1));
+  ASSERT_TRUE(storeZero(folder, none, like_port, {3}, 1));
+  ASSERT_TRUE(storeZero(folder, other, nameless, {4}, 1));
+  EXPECT_EQ(loadZero(folder, one, a, 1).offset[0], 1);
+  EXPECT_EQ(loadZero(folder, other, a1, 1).offset[0], 2);
+  EXPECT_EQ(loadZero(folder, none, like_port, 1).offset[0], 3);
+  EXPECT_EQ(loadZero(folder, other, nameless, 1).offset[0], 4);
+}
+
 TEST_F(LinkTest, AnArmThatFellSilentIsNotCalibratedByItsLastReport) {
   auto link = make(Calibration::kPose);
   ASSERT_TRUE(link->open());

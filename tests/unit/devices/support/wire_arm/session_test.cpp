@@ -157,6 +157,37 @@ TEST(Session, HalfOfItsReportsAreCorruptAndThatIsWhyItIsSlow) {
   EXPECT_EQ(rig.session_.trouble(), Trouble::kCorrupt) << describe(rig.session_.trouble());
 }
 
+/// Many boards send 125 reports a second until somebody corrects the interval of their endpoint.
+TEST(Session, AnArmOfALowerRateThanItsFileSaysIsSlowAndNotSilent) {
+  for (const int every : {2, 4, 6, 8, 10, 14}) {
+    Rig rig;
+    int n = 0;
+    const auto some = [&](auto&) { return ++n % every == 0; };
+    rig.run(0.5, some);
+    for (int ms = 0; ms < 300; ++ms) {
+      rig.run(0.001, some);
+      ASSERT_EQ(rig.session_.trouble(), Trouble::kSlow)
+          << "every " << every << " ms: " << describe(rig.session_.trouble());
+    }
+    rig.run(0.1, [](auto&) { return false; });
+    EXPECT_EQ(rig.session_.trouble(), Trouble::kStale) << "but then it is silent";
+  }
+}
+
+TEST(Session, TwoFaultsAtOnceHaveOneName) {
+  Rig rig;
+  rig.run(0.5);
+  int n = 0, changes = 0;
+  const auto both = [&](auto& bytes) { return ++n % 2 == 0 ? bytes.resize(20), true : (bytes[9] ^= 1, true); };
+  Trouble last = Trouble::kNone;
+  for (int ms = 0; ms < 300; ++ms) {
+    rig.run(0.001, both);
+    changes += rig.session_.trouble() != last;
+    last = rig.session_.trouble();
+  }
+  EXPECT_EQ(changes, 1);
+}
+
 TEST(Session, ABoardThatSendsItsLastReportTwiceIsSilentThen) {
   Rig rig;
   rig.run(0.5);

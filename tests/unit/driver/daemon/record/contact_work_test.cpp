@@ -42,6 +42,15 @@ TEST(ContactWork, OfATimeThatNobodySawIsNotCounted) {
   EXPECT_NEAR(stopped.given(), 1.4e-3, 1e-9) << "and the ticks after it are";
 }
 
+TEST(ContactWork, OfASlowServoIsCounted) {
+  ContactWork slow(0.1);
+  slow.add(0, 0, {0, 0, 1}, {0, 0, 0}, 0.001);
+  slow.add(1, 0.11, {0, 0, 1}, {0, 0, 0.002}, 0.001);
+  EXPECT_NEAR(slow.given(), 2e-3, 1e-9);
+  slow.add(2, 0.3, {0, 0, 1}, {0, 0, 0.004}, 0.001);
+  EXPECT_NEAR(slow.given(), 2e-3, 1e-9) << "but no time in which it stood";
+}
+
 TEST(ContactWork, OfAHandThatBeginsInsideIsNoMoreThanWasStoredThere) {
   ContactWork work;  // 500 N/m, 5 mm deep: 6.25 mJ
   for (uint64_t tick = 0; tick <= 200; ++tick) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kernels/brep/contact/tracer.hpp"
@@ -49,6 +51,40 @@ Part blocks(Part part, double rise, double gap = 0) {
   return part;
 }
 
+/// Adds a body: the prism over a rectangle from x0 to x1 [mm] in x, and from z0 to z1 in z.
+void addBlock(Part& part, double x0, double x1, double z0, double z1) {
+  samples::Polyhedron made;
+  made.part = std::move(part);
+  const std::array<std::array<double, 2>, 4> corners{{{x0, 0}, {x1, 0}, {x1, 10}, {x0, 10}}};
+  const auto at = [&](std::size_t i, double z) { return Vector3d(corners[i % 4][0], corners[i % 4][1], z); };
+  made.addPolygon({{at(0, z1), at(1, z1), at(2, z1), at(3, z1)}});
+  made.addPolygon({{at(3, z0), at(2, z0), at(1, z0), at(0, z0)}});
+  for (std::size_t i = 0; i < 4; ++i) made.addPolygon({{at(i, z0), at(i + 1, z0), at(i + 1, z1), at(i, z1)}});
+  samples::endBody(made.part, BodyKind::kSolid, kClosed);
+  part = std::move(made.part);
+}
+
+/// Leads a probe over the joint of two blocks, on a slanted path that also presses in or lets go: it must always feel
+/// the top of the block that it is in.
+void expectTopsOnSlantedPaths(const Part& part, double rise) {
+  const Model model{Part(part)};
+  for (const double step : {1e-6, 2e-5, 1.5e-4})
+    for (const double aside : {-2.0, 0.0, 1.0})
+      for (const double press : {-0.3, -0.01, 0.0, 0.3}) {
+        Tracer tracer(model);
+        const Vector3d way = step * Vector3d(1, aside, -press).normalized();
+        Vector3d p = Vector3d(kSize, 0.005, kSize - 8e-4) - 9.3 * way;
+        tracer.step({p.x(), p.y(), kSize + 1e-3}, {});
+        for (int i = 0; i < 20; ++i, p += way) {
+          const Foot foot = tracer.step(p, {});
+          const double top = kSize + (p.x() > kSize ? rise : 0);
+          if (!(top - p.z() > 2e-5) || p.z() < 0.005) break;
+          ASSERT_NEAR(foot.depth, top - p.z(), 1e-9) << rise << " up, step " << step << ", " << aside << ", " << press;
+          ASSERT_GT(foot.normal.z(), 0.999) << rise << " up, step " << step << ", " << aside << ", " << press;
+        }
+      }
+}
+
 /// Presses a probe into the top of the first block and leads it along x over the second one. Returns the feet.
 std::vector<Foot> slide(const Part& part, double depth, double step, double aside, bool back) {
   const Model model{Part(part)};
@@ -71,6 +107,51 @@ TEST(FlushBodies, AreFeltAsOneSurface) {
               ASSERT_NEAR(foot.depth, depth, 1e-12) << depth << " deep, steps of " << step;
               ASSERT_NEAR(foot.normal.z(), 1, 1e-12) << depth << " deep, steps of " << step;
             }
+}
+
+TEST(FlushBodies, AreFeltAsOneOnSlantedPaths) {
+  for (const Part& part : {block(), blockOfTriangles()})
+    for (const double rise : {0.0, 3e-7, -3e-7, 8e-6, 4e-5}) expectTopsOnSlantedPaths(blocks(part, rise), rise);
+}
+
+TEST(FlushBodies, AStepDownThatWasPressedThroughHasNoWall) {
+  for (const Part& part : {block(), blockOfTriangles()})
+    for (const double rise : {-2e-5, -1e-4, -4e-4}) expectTopsOnSlantedPaths(blocks(part, rise), rise);
+}
+
+TEST(FlushBodies, TheTopmostOfAStackIsFelt) {
+  Part part;
+  addBlock(part, 0, 10, 0, 10);
+  addBlock(part, 10, 20, 0, 9.7);  // the probe is in this one
+  addBlock(part, 10, 20, 9.7, 10);
+  expectTopsOnSlantedPaths(part, 0);
+}
+
+TEST(FlushBodies, ANarrowStripIsFeltAsWell) {
+  Part part;
+  addBlock(part, 0, 10, 0, 10);
+  addBlock(part, 10, 10.06, 0, 10);
+  addBlock(part, 10.06, 20, 0, 10);
+  expectTopsOnSlantedPaths(part, 0);
+}
+
+TEST(FlushBodies, OfOneCylinderAreFeltAsOne) {
+  Part part = samples::cappedCylinder(5, 20);
+  part.instances.push_back(part.instances[0]);
+  part.instances.back().pose[11] += 0.020;
+  const Model model(std::move(part));
+  for (const double step : {1e-6, 2e-5, 1.5e-4})
+    for (const double turn : {0.0, 2.0})
+      for (const double press : {-0.3, 0.0, 0.3}) {
+        Tracer tracer(model);
+        double angle = 1, height = 0.020 - 5.4 * step, r = 0.0042;
+        tracer.step({0.006 * std::cos(angle), 0.006 * std::sin(angle), height}, {});
+        for (int i = 0; i < 20 && r < 0.00498; ++i) {
+          const Foot foot = tracer.step({r * std::cos(angle), r * std::sin(angle), height}, {});
+          ASSERT_NEAR(foot.depth, 0.005 - r, 1e-9) << "step " << step << ", turn " << turn << ", press " << press;
+          angle += turn * step / r, height += step, r -= press * step;
+        }
+      }
 }
 
 TEST(FlushBodies, AreNotThoseOfAnotherHeight) {

@@ -51,6 +51,17 @@ TEST_F(DeviceBus, AnArmOfOnesOwnIsFoundByTheIdOfItsFile) {
   EXPECT_EQ(found[0].module, "usb_hid");
 }
 
+TEST_F(DeviceBus, OfSeveralFilesEachArmHasTheNameOfItsOwn) {
+  plug("1-1", {{"idVendor", "12ab"}, {"idProduct", "0001"}, {"serial", "A1"}});
+  plug("1-2", {{"idVendor", "12ab"}, {"idProduct", "0001"}});
+  plug("1-3", {{"idVendor", "12ab"}, {"idProduct", "0001"}});
+  const auto found = scan({{"12ab:0001", "left", "usb_hid", "", "1-2"}, {"12ab:0001", "right", "usb_hid", "A1", ""}});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].product, "right");
+  EXPECT_EQ(found[1].product, "left");
+  EXPECT_EQ(found[2].product, "like left");
+}
+
 TEST_F(DeviceBus, EveryProductOfAVendorIsKnownByTheVendorAlone) {
   plug("1-1", {{"idVendor", "2988"}, {"idProduct", "0304"}});
   ASSERT_EQ(scan().size(), 1u);
