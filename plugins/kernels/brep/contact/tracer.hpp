@@ -56,7 +56,7 @@ class Tracer {
     double depth;         ///< [m] of the probe below `on`: no step down is higher
     double up;            ///< [m] highest step up that is none
   };
-  using Places = std::array<std::uint32_t, 16>;  ///< placements of bodies about a joint
+  using Places = std::array<std::uint32_t, 8>;  ///< placements of bodies about a joint
 
   contact::Followed follow(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed followFace(double side, const Eigen::Vector3d& p) noexcept;
