@@ -12,6 +12,7 @@
 #include "document/json_text.hpp"
 #include "import/progress_line.hpp"
 #include "import/unstated_unit.hpp"
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
 
@@ -130,7 +131,11 @@ Result<std::string> makePart(importing::MeshFile& mesh, const MeshImport& option
                                    [&progress](const char* what) { progress.show(what); }};
   try {
     const std::string name = std::filesystem::path(options.file).filename().string();
-    const brep::Part part = importing::meshPart(mesh, how, name, report);
+    brep::Part part = importing::meshPart(mesh, how, name, report);
+    if (options.felt) {
+      progress.show("finding how far each triangle is alone, so that ticks are short");
+      brep::findEmptyBalls(part);
+    }
     progress.show("writing the part");
     return brep::writePart(part);
   } catch (const std::exception& error) {

@@ -13,6 +13,7 @@ struct MeshImport {
   importing::Placement placement;
   double smooth_angle = 0;  ///< [degrees] see MeshOptions::smooth_angle
   bool json = false;        ///< true prints the report as JSON
+  bool felt = true;         ///< false leaves out what only a hand needs: the empty balls
 };
 
 /// [main] Prints each line of an error as an error of its own. @return the given exit code

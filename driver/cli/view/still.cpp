@@ -55,6 +55,7 @@ int importInto(const std::string& file, const std::string& out, double scale) {
   how.file = how.named = file;
   how.out = out;
   how.placement = placement;
+  how.felt = false;
   return importMesh(how);
 }
 

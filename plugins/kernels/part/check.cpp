@@ -48,9 +48,9 @@ class Checker {
     each("instance", part_.instances, &Checker::instance);
     each("point", part_.points, &Checker::point);
     each("triangle", part_.triangles, &Checker::triangle);
-    if (!part_.colours.empty() && part_.colours.size() != part_.triangles.size())
-      throw PartError("colours: there are those of " + std::to_string(part_.colours.size()) + " triangles, expected " +
-                      std::to_string(part_.triangles.size()) + ", as many as the part has, or none");
+    each("ball", part_.balls, &Checker::ball);
+    ofAllTriangles("colours", part_.colours.size());
+    ofAllTriangles("balls", part_.balls.size());
     owners();
   }
 
@@ -61,6 +61,12 @@ class Checker {
     if (records.size() >= kNone)
       throw PartError(std::string(kind) + ": too many records, expected fewer than 4294967295");
     for (std::size_t i = 0; i < records.size(); ++i) (this->*check)({kind, i}, records[i]);
+  }
+
+  void ofAllTriangles(const std::string& what, std::size_t count) const {
+    if (count != 0 && count != part_.triangles.size())
+      throw PartError(what + ": there are those of " + std::to_string(count) + " triangles, expected " +
+                      std::to_string(part_.triangles.size()) + ", as many as the part has, or none");
   }
 
   void header() const {
@@ -318,6 +324,18 @@ class Checker {
               "the edge across has other end points, expected the same two points");
       at.need(other.across[m] != kNone, "the edge across is marked as free, but it has a triangle across");
     }
+  }
+
+  void ball(const RecordCheck& at, const EmptyBalls& b) const {
+    constexpr std::uint16_t kEndless = 0x7f80;  // of these halves, what is greater is negative or no number
+    const auto radius = [&](std::uint16_t bits) {
+      at.need(bits <= kEndless, "a radius is negative or no number, expected 0 or more");
+    };
+    for (const EmptyBalls::Side& side : b.sides) {
+      radius(side.whole);
+      for (const std::uint16_t slope : side.slope) radius(slope);
+    }
+    at.need(b.around <= 1, "`around` is more than 1, expected 0 or 1");
   }
 
   /// Checks that each face and each triangle belongs to exactly one body, the one whose range contains it.

@@ -198,6 +198,17 @@ struct CornerColours {
   std::array<std::uint32_t, 3> corner{};
 };
 
+/// What is known of the empty balls of a triangle: see kernels/brep/model/empty_balls.hpp. Each number is the upper
+/// half of one in single precision, and not negative.
+struct EmptyBalls {
+  struct Side {
+    std::uint16_t whole = 0;               ///< [m]
+    std::array<std::uint16_t, 3> slope{};  ///< [m], one for each edge
+  };
+  std::array<Side, 2> sides{};  ///< that to which the normal points, and the other
+  std::uint16_t around = 0;     ///< 1 if the rings around its corners have all triangles that touch it, else 0
+};
+
 /// A piece of geometry that an import could not keep exactly.
 struct Loss {
   std::string what;    ///< the piece, such as "face 12 'lid'" or "curve of edge 7"
@@ -237,6 +248,7 @@ struct Part {
   std::vector<Point> points;
   std::vector<Triangle> triangles;
   std::vector<CornerColours> colours;  ///< of each triangle; empty if no triangle has a colour
+  std::vector<EmptyBalls> balls;       ///< of each triangle; empty if they are not known
 };
 
 /// [main] Sets first_coedge and coedge_count of all edges, and next of all coedges, from Coedge::edge. Indices out of
@@ -246,7 +258,7 @@ void linkCoedges(Part& part);
 static_assert(sizeof(Surface) == 176 && sizeof(Curve3) == 96 && sizeof(Curve2) == 72 && sizeof(Vertex) == 32);
 static_assert(sizeof(Edge) == 56 && sizeof(Coedge) == 40 && sizeof(Loop) == 8 && sizeof(Face) == 72);
 static_assert(sizeof(Body) == 64 && sizeof(Instance) == 112 && sizeof(Point) == 24 && sizeof(Triangle) == 24);
-static_assert(sizeof(CornerColours) == 12);
+static_assert(sizeof(CornerColours) == 12 && sizeof(EmptyBalls) == 18);
 static_assert(std::is_trivially_copyable_v<Surface> && std::is_trivially_copyable_v<Body>);
 
 }  // namespace hapticd::brep

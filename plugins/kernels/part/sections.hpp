@@ -24,6 +24,7 @@ void forEachSection(PartType& part, Visitor&& visit) {
   visit("point", part.points);
   visit("triangle", part.triangles);
   visit("colour", part.colours);
+  visit("ball", part.balls);
 }
 
 constexpr std::size_t alignedSection(std::size_t offset) {

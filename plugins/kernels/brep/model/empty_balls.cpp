@@ -10,8 +10,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "kernels/brep/model/model.hpp"
 #include "kernels/brep/tree/lanes.hpp"
@@ -21,7 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
-using Three = std::array<double, 3>;  ///< numbers of the corners of a triangle
+using Three = std::array<double, 3>;          ///< numbers of the corners of a triangle
+using Halves = std::array<std::uint16_t, 8>;  ///< all numbers of EmptyBalls::sides
 
 constexpr Float4 kZero4{};
 constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -64,15 +67,17 @@ class BallFinder {
     for (Three& slope : slope_) slope.fill(kEndless);
   }
 
-  void find(EmptyBalls& balls) {
+  EmptyBalls find() {
     constexpr double kNarrow = 1e-3;  // height over radius; rounding decides where such a triangle looks
-    if (!(*std::min_element(height_.begin(), height_.end()) > kNarrow * radius_)) return;
+    EmptyBalls balls;
+    if (!(*std::min_element(height_.begin(), height_.end()) > kNarrow * radius_)) return balls;
     meetAll();
     for (std::size_t side = 0; side < 2; ++side) {
-      balls.sides[side].whole = Coarse::down(kShare * whole_[side]);
+      balls.sides[side].whole = Coarse::down(kShare * whole_[side]).bits();
       for (std::size_t k = 0; k < 3; ++k)
-        balls.sides[side].slope[k] = Coarse::down(std::min(kShare * slope_[side][k] * height_[k], 1e30));
+        balls.sides[side].slope[k] = Coarse::down(std::min(kShare * slope_[side][k] * height_[k], 1e30)).bits();
     }
+    return balls;
   }
 
  private:
@@ -269,7 +274,7 @@ class BallFinder {
 };
 
 /// Finds out for which triangles aroundCorner() tells all that have a corner in common.
-void findRings(const Part& part, const BodyTree& tree, std::vector<EmptyBalls>& balls) {
+void findRings(Part& part, const BodyTree& tree) {
   std::vector<std::uint32_t> triangles_at(part.points.size());
   for (const Element element : tree.elements)
     for (const std::uint32_t point : part.triangles[element.index()].corner) ++triangles_at[point];
@@ -278,21 +283,21 @@ void findRings(const Part& part, const BodyTree& tree, std::vector<EmptyBalls>& 
     bool all = true;
     for (std::uint32_t k = 0; k < 3; ++k)
       all = all && aroundCorner(part, t, k, [](std::uint32_t) {}) == triangles_at[part.triangles[t].corner[k]];
-    balls[t].around = all;
+    part.balls[t].around = all ? 1 : 0;
   }
 }
 
 }  // namespace
 
-std::vector<EmptyBalls> findEmptyBalls(const Part& part, const BodyTree& tree) {
+void findEmptyBalls(Part& part, const BodyTree& tree) {
   constexpr std::size_t kWorthAThread = 10'000;  // triangles
-  std::vector<EmptyBalls> balls(part.triangles.size());
+  part.balls.resize(part.triangles.size());
   const std::size_t count = tree.elements.size();
   const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
   const std::size_t workers = std::clamp<std::size_t>(count / kWorthAThread, 1, most);
   const auto findSome = [&](std::size_t worker) {  // in the order of the tree, neighbours meet the same triangles
     for (std::size_t i = worker * count / workers; i < (worker + 1) * count / workers; ++i)
-      BallFinder(part, tree, tree.elements[i].index()).find(balls[tree.elements[i].index()]);
+      part.balls[tree.elements[i].index()] = BallFinder(part, tree, tree.elements[i].index()).find();
   };
   std::vector<std::jthread> others;
   for (std::size_t worker = 1; worker < workers; ++worker) try {
@@ -302,8 +307,29 @@ std::vector<EmptyBalls> findEmptyBalls(const Part& part, const BodyTree& tree) {
     }
   findSome(0);
   others.clear();
-  findRings(part, tree, balls);
-  return balls;
+  findRings(part, tree);
+}
+
+bool hasEmptyBalls(const Part& part, const BodyTree& tree) {
+  constexpr std::size_t kSample = 256;  // triangles
+  if (part.balls.size() != part.triangles.size()) return false;
+  for (std::size_t i = 0; i < tree.elements.size(); i += tree.elements.size() / kSample + 1) {
+    const std::uint32_t t = tree.elements[i].index();
+    const auto known = std::bit_cast<Halves>(part.balls[t].sides);
+    if (known != std::bit_cast<Halves>(BallFinder(part, tree, t).find().sides)) return false;
+  }
+  return true;
+}
+
+void findEmptyBalls(Part& part) {
+  ModelOptions options;
+  options.empty_balls = false;
+  try {
+    const Model model(Part(part), options);
+    for (std::uint32_t b = 0; b < part.bodies.size(); ++b)
+      if (!model.body(b).discs.empty()) findEmptyBalls(part, model.body(b));
+  } catch (const std::invalid_argument&) {  // whoever feels the part is told why it cannot be searched
+  }
 }
 
 }  // namespace hapticd::brep

@@ -4,8 +4,8 @@
 /// nothing else. (Empty balls that touch a surface: Amenta and Bern 1999. The largest ones are the balls of its medial
 /// axis.)
 #pragma once
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "kernels/brep/elements/elements.hpp"
 #include "kernels/brep/geometry/triangle_foot.hpp"
@@ -15,31 +15,24 @@ namespace hapticd::brep {
 
 struct BodyTree;
 
-/// What is known of the empty balls of one triangle.
-struct EmptyBalls {
-  /// Bounds for the balls that touch on one side. A ball that touches at a point whose barycentric coordinate for the
-  /// corner opposite of edge k is b, is empty if its radius is less than `whole` and less than b times slope[k].
-  struct Side {
-    Coarse whole;     ///< [m] smaller balls hold no triangle but some that have a corner in common with this one
-    Coarse slope[3];  ///< [m] takes care of those
-  };
+/// [rt] Returns a radius [m]: smaller balls that touch a triangle on one side hold no triangle but some that have a
+/// corner in common with it.
+inline double wholeRadius(const EmptyBalls& balls, bool back) noexcept {
+  return static_cast<double>(Coarse::ofBits(balls.sides[back ? 1 : 0].whole).value());
+}
 
-  /// [rt] Returns a radius [m]: each smaller ball is empty that touches the triangle at a foot in its interior.
-  double radiusAt(const Hit& foot, bool back) const noexcept {
-    const Side& side = sides[back ? 1 : 0];
-    const double along[3] = {foot.v, 1 - foot.u - foot.v, foot.u};
-    double radius = wholeOn(back);
-    for (int k = 0; k < 3; ++k) {
-      const double limit = static_cast<double>(side.slope[k].value()) * along[k];
-      radius = limit < radius ? limit : radius;
-    }
-    return radius;
+/// [rt] Returns a radius [m]: each smaller ball is empty that touches the triangle at a foot in its interior. Where b
+/// is the barycentric coordinate of the corner opposite of edge k, balls that are smaller than b times slope[k] hold
+/// none of the triangles with a corner in common.
+inline double emptyRadius(const EmptyBalls& balls, const Hit& foot, bool back) noexcept {
+  const double along[3] = {foot.v, 1 - foot.u - foot.v, foot.u};
+  double radius = wholeRadius(balls, back);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double limit = static_cast<double>(Coarse::ofBits(balls.sides[back ? 1 : 0].slope[k]).value()) * along[k];
+    radius = limit < radius ? limit : radius;
   }
-  double wholeOn(bool back) const noexcept { return static_cast<double>(sides[back ? 1 : 0].whole.value()); }
-
-  Side sides[2];        ///< that to which the normal points, and the other
-  bool around = false;  ///< aroundCorner() tells all triangles that have a corner in common with this one
-};
+  return radius;
+}
 
 /// [rt] Visits the triangles around a corner of a triangle, over their edges. @param use is called with the index of
 /// each but the first. Returns how many triangles there are, or 0 if they are not a closed ring, or too many.
@@ -61,8 +54,15 @@ std::uint32_t aroundCorner(const Part& part, std::uint32_t triangle, std::uint32
   return 0;
 }
 
-/// [main] Returns the empty balls of a mesh, indexed by the number of the triangle in the part. It takes some
-/// microseconds for each triangle, on all processors. @param tree over the triangles of the mesh
-std::vector<EmptyBalls> findEmptyBalls(const Part& part, const BodyTree& tree);
+/// [main] Finds the empty balls of a mesh, Part::balls. It takes some microseconds for each triangle, on all
+/// processors.
+/// @param tree over the triangles of the mesh
+void findEmptyBalls(Part& part, const BodyTree& tree);
+
+/// [main] True if the part has the balls of a mesh: some of them are found again, and are the same.
+bool hasEmptyBalls(const Part& part, const BodyTree& tree);
+
+/// [main] Finds the empty balls of all meshes of a part, which its file then keeps.
+void findEmptyBalls(Part& part);
 
 }  // namespace hapticd::brep

@@ -9,6 +9,7 @@
 #include "kernels/brep/elements/feet.hpp"
 #include "kernels/brep/elements/part_bounds.hpp"
 #include "kernels/brep/elements/pieces.hpp"
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/brep/model/placements.hpp"
 #include "kernels/brep/model/topology.hpp"
 #include "kernels/part/names.hpp"
@@ -276,10 +277,13 @@ class ModelBuilder {
     });
   }
 
+  /// Keeps the empty balls of the part, or finds them.
   void touchWithBalls() {
-    if (!options_.empty_balls || model_.placements_.size() > 1) return;
     const BodyTree& body = model_.bodies_[model_.placements_[0].body];
-    if (!body.discs.empty()) model_.empty_balls_ = findEmptyBalls(part_, body);
+    if (!options_.empty_balls || model_.placements_.size() > 1 || body.discs.empty())
+      part_.balls = std::vector<EmptyBalls>();
+    else if (!hasEmptyBalls(part_, body))
+      findEmptyBalls(part_, body);
   }
 
   void placeBodies() {
@@ -361,10 +365,9 @@ std::size_t Model::bytes() const noexcept {
   std::size_t sum = geometry_->bytes() + part_.reals.size() * sizeof(double);
   const auto add = [&sum](const auto& v) { sum += v.size() * sizeof v[0]; };
   add(part_.surfaces), add(part_.curves3), add(part_.curves2), add(part_.vertices), add(part_.edges);
-  add(part_.coedges), add(part_.loops), add(part_.faces), add(part_.points), add(part_.triangles);
+  add(part_.coedges), add(part_.loops), add(part_.faces), add(part_.points), add(part_.triangles), add(part_.balls);
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
-  add(smooth_corner_), add(smooth_normals_), add(empty_balls_), add(placements_), add(recognised_), add(first_edge_at_),
-      add(edges_at_);
+  add(smooth_corner_), add(smooth_normals_), add(placements_), add(recognised_), add(first_edge_at_), add(edges_at_);
   for (const RecognisedEdge& edge : recognised_) add(edge.stops), add(edge.parameters);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
   add(face_roots_), add(edge_slots_);

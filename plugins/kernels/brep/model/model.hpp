@@ -12,7 +12,6 @@
 
 #include "kernels/brep/elements/elements.hpp"
 #include "kernels/brep/elements/recognised_edges.hpp"
-#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/brep/tree/box_tree.hpp"
 #include "kernels/brep/tree/row_box.hpp"
 #include "kernels/brep/tree/row_disc.hpp"
@@ -26,8 +25,8 @@ struct ModelOptions {
   std::string instance;
   /// Names or paths of instances or assemblies that are left out.
   std::vector<std::string> without;
-  /// Find the empty balls of a mesh, so that a probe can be followed over it quickly. It takes some microseconds a
-  /// triangle.
+  /// Find the empty balls of a mesh if the part does not have them, so that a probe can be followed over it quickly. It
+  /// takes some microseconds a triangle.
   bool empty_balls = true;
 };
 
@@ -143,7 +142,7 @@ class Model {
   }
 
   /// [any] Returns the empty balls of each triangle, if the model is one mesh; else nothing.
-  const std::vector<EmptyBalls>& emptyBalls() const noexcept { return empty_balls_; }
+  const std::vector<EmptyBalls>& emptyBalls() const noexcept { return part_.balls; }
 
   const std::vector<Placement>& placements() const noexcept { return placements_; }
   const BodyTree& body(std::uint32_t index) const noexcept { return bodies_[index]; }
@@ -178,7 +177,6 @@ class Model {
   std::vector<std::uint32_t> first_edge_at_, edges_at_;  ///< edges at vertex i: edges_at_[first_edge_at_[i]] on
   std::vector<std::uint32_t> smooth_corner_;
   std::vector<Eigen::Vector3f> smooth_normals_;
-  std::vector<EmptyBalls> empty_balls_;
   std::vector<BodyTree> bodies_;
   std::vector<std::int32_t> face_roots_;  ///< one per face, see rootOfFace()
   std::vector<Placement> placements_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/brep/model/narrow_triangles.hpp"
 #include "kernels/brep/search/search.hpp"
 
@@ -99,8 +100,8 @@ class Search::MeshWalk {
     if (region != static_cast<TriangleRegion>(expected)) return true;
     const EmptyBalls& balls = model_.emptyBalls()[at_];
     const bool back = triangle.normal().dot(p_ - hit_.point) < 0;
-    if (exit == kInside && isLess(balls.radiusAt(hit_, back))) return proved_ = true;
-    if (!balls.around || !isLess(balls.wholeOn(back))) return true;
+    if (exit == kInside && isLess(emptyRadius(balls, hit_, back))) return proved_ = true;
+    if (balls.around == 0 || !isLess(wholeRadius(balls, back))) return true;
     Hit best = hit_;
     if (exit != kInside) {
       const std::uint32_t code = triangle.record.across[exit];  // its edge begins and ends at corners of both
@@ -128,7 +129,7 @@ class Search::MeshWalk {
     const double cosine = here.dot(there) * (back == other_back ? 1 : -1);
     if (!(cosine > kLeastCosine * here.norm() * there.norm())) return false;
     const EmptyBalls &balls = model_.emptyBalls()[at_], &others = model_.emptyBalls()[beyond];
-    return others.around && isLess(std::min(balls.wholeOn(back), others.wholeOn(other_back)) / kLarger);
+    return others.around != 0 && isLess(std::min(wholeRadius(balls, back), wholeRadius(others, other_back)) / kLarger);
   }
 
   const Model& model_;

@@ -28,6 +28,8 @@ class Coarse {
     const auto word = std::bit_cast<std::uint32_t>(static_cast<float>(x));
     return std::isfinite(static_cast<float>(x)) ? Coarse(static_cast<std::uint16_t>((word + 0x7fffu) >> 16)) : up(x);
   }
+  static Coarse ofBits(std::uint16_t bits) noexcept { return Coarse(bits); }
+  std::uint16_t bits() const noexcept { return bits_; }
   Coarse operator-() const noexcept { return Coarse(static_cast<std::uint16_t>(bits_ ^ 0x8000u)); }
   float value() const noexcept { return std::bit_cast<float>(std::uint32_t{bits_} << 16); }
 

@@ -8,12 +8,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "kernels/brep/model/narrow_triangles.hpp"
 #include "kernels/brep/search/search.hpp"
+#include "kernels/part/file.hpp"
 #include "sample_meshes.hpp"
 
 namespace hapticd::brep {
@@ -58,7 +62,7 @@ double touchWithBalls(const Part& part, unsigned seed) {
     const bool back = random() % 2 == 0;
     const EmptyBalls& balls = model.emptyBalls()[t];
     const Vector3d x = a + foot.u * ab + foot.v * ac, n = (back ? -1 : 1) * ab.cross(ac).normalized();
-    const double radius = balls.radiusAt(foot, back), whole = balls.wholeOn(back);
+    const double radius = emptyRadius(balls, foot, back), whole = wholeRadius(balls, back);
     EXPECT_LE(radius, whole);
     large += radius > 0;
     if (radius > 0) {
@@ -122,9 +126,9 @@ TEST(EmptyBalls, AreEmpty) {
 TEST(EmptyBalls, EndAtTheNextSheet) {
   const Model model(twoSheets(10, 0, 1e-4));
   const EmptyBalls& lower = model.emptyBalls()[100];
-  EXPECT_LT(lower.wholeOn(false), 0.51e-4);
-  EXPECT_GT(lower.wholeOn(false), 0.2e-4);
-  EXPECT_GT(lower.wholeOn(true), 1e-3);
+  EXPECT_LT(wholeRadius(lower, false), 0.51e-4);
+  EXPECT_GT(wholeRadius(lower, false), 0.2e-4);
+  EXPECT_GT(wholeRadius(lower, true), 1e-3);
 }
 
 /// Two triangles in one place, and triangles that go through each other, have no empty balls.
@@ -136,15 +140,16 @@ TEST(EmptyBalls, AreNoneWhereTrianglesMeet) {
   Hit middle;
   middle.u = middle.v = 0.3;
   for (const bool back : {false, true}) {
-    EXPECT_EQ(twice.emptyBalls()[0].radiusAt(middle, back), 0);
-    EXPECT_EQ(crossing.emptyBalls()[0].radiusAt(middle, back), 0);
+    EXPECT_EQ(emptyRadius(twice.emptyBalls()[0], middle, back), 0);
+    EXPECT_EQ(emptyRadius(crossing.emptyBalls()[0], middle, back), 0);
   }
 }
 
 TEST(EmptyBalls, KnowWhereACornerHasMoreThanOneRing) {
   const auto allAround = [](const Part& part) {
     const Model model{Part(part)};
-    return std::count_if(model.emptyBalls().begin(), model.emptyBalls().end(), [](const auto& b) { return b.around; });
+    return std::count_if(model.emptyBalls().begin(), model.emptyBalls().end(),
+                         [](const auto& b) { return b.around != 0; });
   };
   const Part ball = samples::partOf(samples::unitBall());
   EXPECT_EQ(allAround(ball), 512);
@@ -159,6 +164,48 @@ TEST(EmptyBalls, KnowWhereACornerHasMoreThanOneRing) {
   touching.bodies[0].triangle_count += 1;
   EXPECT_LT(allAround(touching), 512);
   EXPECT_GT(allAround(touching), 512 - 32);
+}
+
+std::vector<EmptyBalls> ballsOf(const Part& part) {
+  return Model(Part(part)).emptyBalls();
+}
+
+bool areSame(const std::vector<EmptyBalls>& a, const std::vector<EmptyBalls>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+/// A part file keeps the balls that an import finds. If they are not those of its triangles, they are found again.
+TEST(EmptyBalls, AreKeptInAFile) {
+  const Part part = samples::bumpyBall(4000);
+  Part with_balls = part;
+  findEmptyBalls(with_balls);
+  const std::string bytes = writePart(with_balls);
+  Part read = readPart(std::as_bytes(std::span(bytes)), "ball.hpart");
+  const std::vector<EmptyBalls> truth = ballsOf(part);
+  EXPECT_EQ(truth.size(), part.triangles.size());
+  EXPECT_TRUE(areSame(read.balls, truth));
+  read.balls[17].around = 0;  // no sample sees this one, so it shows that they are taken from the file
+  EXPECT_TRUE(areSame(ballsOf(read), read.balls));
+  for (EmptyBalls& balls : read.balls) balls.sides[1].whole += 1;
+  EXPECT_TRUE(areSame(ballsOf(read), truth));
+  read.balls.pop_back();
+  EXPECT_TRUE(areSame(ballsOf(read), truth));
+}
+
+/// An assembly has none: another body may be nearer. Its file may have them, for a model of one of its instances.
+TEST(EmptyBalls, AreOfOneInstance) {
+  Part part = samples::bumpyBall(1000);
+  part.instances.push_back(part.instances[0]);
+  part.names = {"here", "there"};
+  part.instances[0].name = 0;
+  part.instances[1].name = 1;
+  part.instances[1].pose[3] = 0.2;
+  findEmptyBalls(part);
+  EXPECT_EQ(part.balls.size(), part.triangles.size());
+  EXPECT_TRUE(ballsOf(part).empty());
+  ModelOptions options;
+  options.instance = "there";
+  EXPECT_TRUE(areSame(Model(Part(part), options).emptyBalls(), part.balls));
 }
 
 /// Walks over a mesh in steps of up to some triangles, and compares each foot with all triangles. Returns the share of
@@ -258,8 +305,8 @@ TEST(MeshWalk, LooksAtBothSidesOfARidge) {
     mesh.push_back({4, 5, attached ? 3u : 6u});
     const Part part = samples::joined(samples::meshOf(all, mesh));
     const Model model{Part(part)};
-    EXPECT_TRUE(model.emptyBalls()[0].around);
-    EXPECT_GT(model.emptyBalls()[0].wholeOn(false), 0.11);
+    EXPECT_EQ(model.emptyBalls()[0].around, 1);
+    EXPECT_GT(wholeRadius(model.emptyBalls()[0], false), 0.11);
     Search search(model);
     const Hit ridge = footOn(part, 0, p);
     EXPECT_LT(leastDistance(part, p), 0.95 * std::sqrt(ridge.d2));

@@ -82,7 +82,7 @@ void walkBeside(const Model& model, unsigned seed, bool spares) {
   Vector3d p = box.center(), way(0, 0, 0);
   std::int64_t near_nodes = 0, all_nodes = 0;
   const bool knows_neighbours = std::any_of(model.emptyBalls().begin(), model.emptyBalls().end(),
-                                            [](const EmptyBalls& balls) { return balls.around; });
+                                            [](const EmptyBalls& balls) { return balls.around != 0; });
   for (int i = 0; i < 60000; ++i) {
     const double step = std::array{1e-6, 1.25e-5, 5e-5, 3e-4, 2e-3}[static_cast<std::size_t>(i / 3000 % 5)];
     if (i % 3000 == 0) p = box.min() + Vector3d(share(random), share(random), 0.5).cwiseProduct(box.sizes());
