@@ -22,6 +22,15 @@ constexpr double kShortStep = 1e-8;
 /// convex enough, and the first-order (Gauss-Newton) step is used instead.
 constexpr double kFlattest = 1e-5;
 
+/// Returns the parameter just below the upper end of a piece. The derivatives at the end itself are those of what comes
+/// next, which differ at a kink.
+template <class Parameter>
+Parameter justBelow(const Parameter& lo, const Parameter& hi) noexcept {
+  using std::abs;
+  constexpr double kUlp = 2.3e-16;
+  return hi - kUlp * (abs(hi) + (hi - lo));
+}
+
 /// The squared distance to the probe and its derivatives at one point of a leaf.
 struct LeafState {
   Array2d uv;
@@ -39,10 +48,11 @@ struct LeafTask {
   const Vector3d& p;
   int evaluations = 0;
   bool arrived = true;  ///< true if the last descent ended at a minimum
+  Array2d below = justBelow(leaf.lo, leaf.hi);
 
   void at(const Array2d& uv, LeafState& state) noexcept {
     state.uv = uv;
-    geometry.surface(surface, uv[0], uv[1], state.E);
+    geometry.surface(surface, std::min(uv[0], below[0]), std::min(uv[1], below[1]), state.E);
     state.r = state.E.S - p;
     state.f = state.r.squaredNorm();
     ++evaluations;
@@ -219,10 +229,11 @@ struct CurveTask {
   std::uint32_t curve;
   const Vector3d& p;
   int evaluations = 0;
+  double below = justBelow(piece.t0, piece.t1);
 
   void at(double t, CurveState& state) noexcept {
     state.t = t;
-    geometry.curve(curve, t, state.C);
+    geometry.curve(curve, std::min(t, below), state.C);
     state.r = state.C.C - p;
     state.f = state.r.squaredNorm();
     ++evaluations;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "kernels/brep/elements/newton_feet.hpp"
 #include "kernels/brep/search/search.hpp"
 #include "kernels/part/file.hpp"
 #include "sample_meshes.hpp"
@@ -283,6 +284,40 @@ TEST(CertifiedWalks, NoFootThatIsToldToBeTheNearestIsFarther) {
   }
   std::printf("in all %lld ticks, %lld certified, %lld wrong\n", static_cast<long long>(all.ticks),
               static_cast<long long>(all.proved), static_cast<long long>(all.wrong));
+}
+
+/// Where a chord ends, Newton's method must not see the slope of the next one: a search that began there called a foot
+/// the nearest that was 12 um too far.
+TEST(Kinks, AreSeenFromTheSideOfThePiece) {
+  const Model model(extrudedPolyline());
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> x(-0.03, 0.03), y(-0.01, 0.03), z(-0.01, 0.04);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p(x(random), y(random), z(random));
+    for (std::uint32_t k = 0; k < model.pieceCount(); ++k) {
+      const CurvePiece& piece = model.piece(k);
+      const auto from = [&](double share) {
+        Hit hit;
+        pieceFoot(model.geometry(), piece, p, piece.t0 + share * (piece.t1 - piece.t0), 1, hit);
+        return std::sqrt(hit.d2);
+      };
+      ASSERT_NEAR(from(0), from(0.5), kRounding) << "piece " << k << ", probe " << p.transpose();
+      ASSERT_NEAR(from(1), from(0.5), kRounding) << "piece " << k << ", probe " << p.transpose();
+    }
+    for (std::uint32_t k = 0; k < model.leafCount(); ++k) {
+      const Leaf& leaf = model.leaf(k);
+      const auto from = [&](double share) {
+        Hit hit;
+        LeafStart start;
+        start.uv = leaf.lo + share * (leaf.hi - leaf.lo);
+        leafFoot(model.geometry(), leaf, model.face(leaf.face), model.part().faces[leaf.face].surface, p, start, hit);
+        return std::sqrt(hit.d2);
+      };
+      if (std::isinf(from(0.5))) continue;  // beyond the end of the tube
+      ASSERT_NEAR(from(0), from(0.5), kRounding) << "leaf " << k << ", probe " << p.transpose();
+      ASSERT_NEAR(from(1), from(0.5), kRounding) << "leaf " << k << ", probe " << p.transpose();
+    }
+  }
 }
 
 }  // namespace
