@@ -71,7 +71,7 @@ class BallFinder {
     constexpr double kNarrow = 1e-3;  // height over radius; rounding decides where such a triangle looks
     EmptyBalls balls;
     if (!(*std::min_element(height_.begin(), height_.end()) > kNarrow * radius_)) return balls;
-    meetAll();
+    if (!meetAll()) return balls;
     for (std::size_t side = 0; side < 2; ++side) {
       balls.sides[side].whole = Coarse::down(kShare * whole_[side]).bits();
       for (std::size_t k = 0; k < 3; ++k)
@@ -81,21 +81,27 @@ class BallFinder {
   }
 
  private:
-  /// Meets all triangles that the balls may reach.
-  void meetAll() {
+  /// Meets all triangles that the balls may reach. Returns false if there are too many, as about a long and narrow one.
+  bool meetAll() {
+    constexpr int kMostNodes = 1024, kMostRows = 512;
+    int nodes = 0, rows_met = 0;
     const BoxProbe probe(tree_.tree, center_);
     std::array<std::int32_t, BoxTree::kMaxStack> stack{};
     int depth = 1;
     while (depth > 0) {
+      if (++nodes > kMostNodes) return false;
       const BoxNode& node = tree_.tree.node(stack[static_cast<std::size_t>(--depth)]);
       const Test4 rows = Test4{node.child[0], node.child[1], node.child[2], node.child[3]} < 0;
       const std::uint32_t near = bitsOf(boxesWithinReach(node, probe));
       for (std::uint32_t left = near & ~bitsOf(rows); left != 0; left &= left - 1)
         stack[static_cast<std::size_t>(depth++)] = node.child[static_cast<std::size_t>(std::countr_zero(left))];
       if ((near & bitsOf(rows)) == 0) continue;
-      for (std::uint32_t left = near & bitsOf(rows & rowsWithinReach(node, probe)); left != 0; left &= left - 1)
+      const std::uint32_t met = near & bitsOf(rows & rowsWithinReach(node, probe));
+      if ((rows_met += std::popcount(met)) > kMostRows) return false;
+      for (std::uint32_t left = met; left != 0; left &= left - 1)
         meetRow(BoxTree::rowOf(node.child[static_cast<std::size_t>(std::countr_zero(left))]));
     }
+    return true;
   }
 
   /// Tests four boxes: false if the balls certainly hold no point of a box.

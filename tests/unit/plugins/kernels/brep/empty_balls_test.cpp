@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <span>
 #include <string>
@@ -321,6 +322,23 @@ TEST(MeshWalk, LooksAtBothSidesOfARidge) {
 /// A walk needs the neighbours of triangles. Without them it stays on its triangle.
 TEST(MeshWalk, IsRightWithoutNeighbours) {
   EXPECT_GT(walk(samples::sheet(40, 0.004), 0.0005, 1e-4, 9), 0.5);
+}
+
+/// To find the balls of a triangle has a bound: needles side by side, as on a finely divided cylinder, are all near
+/// each other. Otherwise a mesh of 40,000 of them took minutes.
+TEST(EmptyBalls, AreNotLookedForAmongVeryManyNeedles) {
+  constexpr std::uint32_t kCount = 3000;
+  std::vector<Vector> points;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::uint32_t i = 0; i <= kCount; ++i) {
+    const double a = 2 * std::numbers::pi * i / kCount;
+    for (const double z : {0.0, 0.02}) points.push_back({0.01 * std::cos(a), 0.01 * std::sin(a), z});
+    if (i > 0) corners.insert(corners.end(), {{2 * i - 2, 2 * i, 2 * i + 1}, {2 * i - 2, 2 * i + 1, 2 * i - 1}});
+  }
+  const Part part = samples::joined(samples::meshOf(points, corners));
+  const Model model{Part(part)};
+  for (const EmptyBalls& balls : model.emptyBalls()) ASSERT_EQ(wholeRadius(balls, false), 0);
+  EXPECT_GE(walk(part, 0.0005, 1e-4, 11), 0);
 }
 
 }  // namespace
