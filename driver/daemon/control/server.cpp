@@ -33,28 +33,32 @@ Error cannot(const std::string& file, const std::string& what) {
 }  // namespace
 
 Result<std::unique_ptr<Server>> Server::listen(const std::string& file, const std::string& group) {
+  const std::string early = file + "~";  // it gets its name when it answers: no program finds a socket that refuses
   sockaddr_un address{};
-  if (!socketAddress(file, address)) return cannot(file, "the path is too long for a socket");
+  if (!socketAddress(early, address)) return cannot(file, "the path is too long for a socket");
   if (connectTo(file)) return cannot(file, "another daemon has this socket\n  fix: hapticd run --name OTHER");
   struct stat old{};
   if (lstat(file.c_str(), &old) == 0 && !S_ISSOCK(old.st_mode))
     return cannot(file, "a file that is not a socket has this name\n  fix: move it away, or hapticd run --name OTHER");
-  unlink(file.c_str());
+  unlink(early.c_str());
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   int wake[2] = {-1, -1};
   const mode_t mask = umask(0177);  // only the owner may connect until the group is set
   const bool bound = fd >= 0 && bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   umask(mask);
   constexpr int kBacklog = 16;
-  const bool listens = bound && ::listen(fd, kBacklog) == 0 && pipe2(wake, O_CLOEXEC | O_NONBLOCK) == 0;
-  const int code = errno;
-  if (!listens) {
-    if (fd >= 0) close(fd);
-    return cannot(file, std::strerror(code));
-  }
   const struct group* found = group.empty() ? nullptr : getgrnam(group.c_str());
   const gid_t owner = found != nullptr ? found->gr_gid : getegid();
-  if (chown(file.c_str(), static_cast<uid_t>(-1), owner) == 0) chmod(file.c_str(), 0660);
+  if (bound && chown(early.c_str(), static_cast<uid_t>(-1), owner) == 0) chmod(early.c_str(), 0660);
+  const bool listens = bound && pipe2(wake, O_CLOEXEC | O_NONBLOCK) == 0 && ::listen(fd, kBacklog) == 0 &&
+                       rename(early.c_str(), file.c_str()) == 0;
+  if (!listens) {
+    const int code = errno;
+    for (const int open : {fd, wake[0], wake[1]})
+      if (open >= 0) close(open);
+    if (bound) unlink(early.c_str());
+    return cannot(file, std::strerror(code));
+  }
   return std::unique_ptr<Server>(new Server(file, fd, wake[0], wake[1]));
 }
 
