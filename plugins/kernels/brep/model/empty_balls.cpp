@@ -11,8 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "kernels/brep/model/model.hpp"
@@ -296,23 +294,9 @@ void findRings(Part& part, const BodyTree& tree) {
 }  // namespace
 
 void findEmptyBalls(Part& part, const BodyTree& tree) {
-  constexpr std::size_t kWorthAThread = 10'000;  // triangles
   part.balls.resize(part.triangles.size());
-  const std::size_t count = tree.elements.size();
-  const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t workers = std::clamp<std::size_t>(count / kWorthAThread, 1, most);
-  const auto findSome = [&](std::size_t worker) {  // in the order of the tree, neighbours meet the same triangles
-    for (std::size_t i = worker * count / workers; i < (worker + 1) * count / workers; ++i)
-      part.balls[tree.elements[i].index()] = BallFinder(part, tree, tree.elements[i].index()).find();
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t worker = 1; worker < workers; ++worker) try {
-      others.emplace_back(findSome, worker);
-    } catch (const std::system_error&) {  // no more threads are allowed
-      findSome(worker);
-    }
-  findSome(0);
-  others.clear();
+  for (const Element element : tree.elements)  // in this order, neighbours meet the same triangles
+    part.balls[element.index()] = BallFinder(part, tree, element.index()).find();
   findRings(part, tree);
 }
 
