@@ -97,8 +97,8 @@ void Server::serve() {
     for (const Client& client : clients_) {
       // no more requests are read from a client that does not read its answers
       const bool reads = client.out.empty() && !client.closing && client.in.size() <= kMaxRequestBytes;
-      const short events = client.out.empty() ? (reads ? POLLIN : 0) : POLLOUT;
-      polled.push_back({client.hung ? -1 : client.fd, events, 0});
+      const int events = client.out.empty() ? (reads ? POLLIN : 0) : POLLOUT;
+      polled.push_back({client.hung ? -1 : client.fd, static_cast<short>(events), 0});
     }
     poll(polled.data(), polled.size(), listened() ? static_cast<int>(kNewsPeriod / 1'000'000) : kPollMs);
     const Nanoseconds now = monotonicNow();

@@ -78,10 +78,10 @@ class Checker {
         throw PartError("the loss of " + loss.what + " has size " + numberText(loss.size) + " m, expected 0 or more");
   }
 
-  void name(const RecordCheck& at, std::uint32_t index) const { at.index_or_none(index, part_.names.size(), "name"); }
+  void name(const RecordCheck& at, std::uint32_t index) const { at.indexOrNone(index, part_.names.size(), "name"); }
 
   void surface(const RecordCheck& at, const Surface& s) const {
-    at.flags_in(s.flags, kRational | kClosedU | kClosedV);
+    at.flagsIn(s.flags, kRational | kClosedU | kClosedV);
     for (const Vector* v : {&s.o, &s.x, &s.y, &s.z}) at.finite(*v, kFarthestPart, "an axis");
     at.finite(s.r, kFarthestPart, "a radius");
     for (double period : s.period)
@@ -91,13 +91,13 @@ class Checker {
       case SurfaceKind::kSpline:
         return splineSurface(at, s);
       case SurfaceKind::kExtrusion:
-        at.index_in(s.basis, part_.curves3.size(), "basis curve");
+        at.indexIn(s.basis, part_.curves3.size(), "basis curve");
         return at.positive(norm(s.z), "the length of the direction z");
       case SurfaceKind::kRevolution:
-        at.index_in(s.basis, part_.curves3.size(), "basis curve");
+        at.indexIn(s.basis, part_.curves3.size(), "basis curve");
         return unit(at, s.z, "z");
       case SurfaceKind::kOffset:
-        return at.index_in(s.basis, std::min<std::size_t>(at.index, part_.surfaces.size()), "basis surface");
+        return at.indexIn(s.basis, std::min<std::size_t>(at.index, part_.surfaces.size()), "basis surface");
       default:
         return analytic(at, s);
     }
@@ -113,7 +113,7 @@ class Checker {
   }
 
   static void analytic(const RecordCheck& at, const Surface& s) {
-    at.kind_in(s.kind, SurfaceKind::kOffset);
+    at.kindIn(s.kind, SurfaceKind::kOffset);
     if (s.kind == SurfaceKind::kPlane) {
       at.positive(norm(s.x), "the length of x");
       at.positive(norm(s.y), "the length of y");
@@ -137,7 +137,7 @@ class Checker {
     std::uint64_t place = s.data;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const std::uint64_t length = std::uint64_t{s.count[axis]} + s.degree[axis] + 1;
-      at.range_in(place, length, part_.reals.size(), "knots");
+      at.rangeIn(place, length, part_.reals.size(), "knots");
       const std::string wrong = wrongKnots(real(place, length), s.degree[axis], s.count[axis]);
       if (!wrong.empty()) at.fail(std::string("knots along ") + (axis == 0 ? "u: " : "v: ") + wrong);
       place += length;
@@ -154,7 +154,7 @@ class Checker {
            double farthest) const {
     if (points > part_.reals.size())
       at.fail("it has more control points than the part has numbers; the file may be damaged");
-    at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
+    at.rangeIn(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
     for (double value : real(place, points * dimension))
       at.finite(std::array{value}, farthest, "a coordinate of a control point");
     if (!rational) return;
@@ -164,12 +164,12 @@ class Checker {
 
   template <class Curve>
   void curve(const RecordCheck& at, const Curve& c, std::uint64_t dimension, double farthest) const {
-    at.kind_in(c.kind, CurveKind::kSpline);
-    at.flags_in(c.flags, kRational);
+    at.kindIn(c.kind, CurveKind::kSpline);
+    at.flagsIn(c.flags, kRational);
     for (const auto* v : {&c.o, &c.x, &c.y}) at.finite(*v, farthest, "an axis");
     if (c.kind != CurveKind::kSpline) return;
     const std::uint64_t length = std::uint64_t{c.count} + c.degree + 1;
-    at.range_in(c.data, length, part_.reals.size(), "knots");
+    at.rangeIn(c.data, length, part_.reals.size(), "knots");
     const std::string wrong = wrongKnots(real(c.data, length), c.degree, c.count);
     if (!wrong.empty()) at.fail("knots: " + wrong);
     net(at, c.data + length, c.count, dimension, (c.flags & kRational) != 0, farthest);
@@ -201,15 +201,15 @@ class Checker {
   }
 
   void edge(const RecordCheck& at, const Edge& e) const {
-    at.kind_in(e.kind, EdgeKind::kPole);
-    at.index_or_none(e.first_vertex, part_.vertices.size(), "vertex");
-    at.index_or_none(e.last_vertex, part_.vertices.size(), "vertex");
+    at.kindIn(e.kind, EdgeKind::kPole);
+    at.indexOrNone(e.first_vertex, part_.vertices.size(), "vertex");
+    at.indexOrNone(e.last_vertex, part_.vertices.size(), "vertex");
     at.finite(std::array{e.angle}, 7, "the angle");
     at.tolerance(e.tolerance);
     if (e.kind == EdgeKind::kPole) {
       at.need(e.curve == kNone, "a pole has a curve, expected none: it is a single point");
     } else {
-      at.index_in(e.curve, part_.curves3.size(), "curve");
+      at.indexIn(e.curve, part_.curves3.size(), "curve");
       at.ascending(e.t0, e.t1, "parameters");
       const CurveKind kind = part_.curves3[e.curve].kind;
       if (kind == CurveKind::kCircle || kind == CurveKind::kEllipse)
@@ -219,7 +219,7 @@ class Checker {
     }
     std::uint32_t coedge = e.first_coedge, met = 0;
     for (; coedge != kNone && met <= e.coedge_count; ++met) {
-      at.index_in(coedge, part_.coedges.size(), "coedge");
+      at.indexIn(coedge, part_.coedges.size(), "coedge");
       if (part_.coedges[coedge].edge != at.index)
         at.fail("coedge " + std::to_string(coedge) + " belongs to edge " + std::to_string(part_.coedges[coedge].edge) +
                 ", expected a coedge of this edge");
@@ -231,11 +231,11 @@ class Checker {
   }
 
   void coedge(const RecordCheck& at, const Coedge& c) const {
-    at.index_in(c.edge, part_.edges.size(), "edge");
-    at.index_in(c.face, part_.faces.size(), "face");
-    at.index_in(c.pcurve, part_.curves2.size(), "pcurve");
-    at.index_or_none(c.next, part_.coedges.size(), "next");
-    at.flags_in(c.flags, kReversed | kSeam | kDegenerate);
+    at.indexIn(c.edge, part_.edges.size(), "edge");
+    at.indexIn(c.face, part_.faces.size(), "face");
+    at.indexIn(c.pcurve, part_.curves2.size(), "pcurve");
+    at.indexOrNone(c.next, part_.coedges.size(), "next");
+    at.flagsIn(c.flags, kReversed | kSeam | kDegenerate);
     at.ascending(c.t0, c.t1, "parameters");
     const Edge& e = part_.edges[c.edge];
     const bool pole = e.kind == EdgeKind::kPole;
@@ -246,7 +246,7 @@ class Checker {
   }
 
   void loop(const RecordCheck& at, const Loop& l) const {
-    at.range_in(l.first, l.count, part_.coedges.size(), "coedges");
+    at.rangeIn(l.first, l.count, part_.coedges.size(), "coedges");
     at.need(l.count > 0, "no coedges, expected at least one");
     const std::uint32_t face = part_.coedges[l.first].face;
     for (std::uint32_t i = 0; i < l.count; ++i)
@@ -254,10 +254,10 @@ class Checker {
   }
 
   void face(const RecordCheck& at, const Face& f) const {
-    at.index_in(f.surface, part_.surfaces.size(), "surface");
-    at.index_in(f.body, part_.bodies.size(), "body");
-    at.range_in(f.first_loop, f.loop_count, part_.loops.size(), "loops");
-    at.flags_in(f.flags, kReversed);
+    at.indexIn(f.surface, part_.surfaces.size(), "surface");
+    at.indexIn(f.body, part_.bodies.size(), "body");
+    at.rangeIn(f.first_loop, f.loop_count, part_.loops.size(), "loops");
+    at.flagsIn(f.flags, kReversed);
     name(at, f.name);
     at.tolerance(f.tolerance);
     at.ascending(f.lo[0], f.hi[0], "u");
@@ -268,14 +268,14 @@ class Checker {
   }
 
   void body(const RecordCheck& at, const Body& b) const {
-    at.kind_in(b.kind, BodyKind::kMesh);
-    at.flags_in(b.flags, kClosed);
+    at.kindIn(b.kind, BodyKind::kMesh);
+    at.flagsIn(b.flags, kClosed);
     name(at, b.name);
-    at.range_in(b.first_face, b.face_count, part_.faces.size(), "faces");
-    at.range_in(b.first_edge, b.edge_count, part_.edges.size(), "edges");
-    at.range_in(b.first_vertex, b.vertex_count, part_.vertices.size(), "vertices");
-    at.range_in(b.first_point, b.point_count, part_.points.size(), "points");
-    at.range_in(b.first_triangle, b.triangle_count, part_.triangles.size(), "triangles");
+    at.rangeIn(b.first_face, b.face_count, part_.faces.size(), "faces");
+    at.rangeIn(b.first_edge, b.edge_count, part_.edges.size(), "edges");
+    at.rangeIn(b.first_vertex, b.vertex_count, part_.vertices.size(), "vertices");
+    at.rangeIn(b.first_point, b.point_count, part_.points.size(), "points");
+    at.rangeIn(b.first_triangle, b.triangle_count, part_.triangles.size(), "triangles");
     if (!(b.smooth_angle >= 0 && b.smooth_angle <= 3.2))
       at.fail("smooth_angle is " + numberText(b.smooth_angle) + " rad, expected 0 to pi");
     if (b.kind == BodyKind::kMesh) at.need(b.face_count == 0, "a mesh has faces, expected only triangles");
@@ -290,10 +290,10 @@ class Checker {
   }
 
   void instance(const RecordCheck& at, const Instance& i) const {
-    at.index_or_none(i.body, part_.bodies.size(), "body");
+    at.indexOrNone(i.body, part_.bodies.size(), "body");
     name(at, i.name);
     if (i.parent != kNone) {
-      at.index_in(i.parent, at.index, "parent");
+      at.indexIn(i.parent, at.index, "parent");
       at.need(part_.instances[i.parent].body == kNone,
               "its parent has a body, expected an assembly (an instance without a body)");
     }
@@ -311,10 +311,10 @@ class Checker {
   void point(const RecordCheck& at, const Point& p) const { at.finite(p, kFarthestPart, "a coordinate"); }
 
   void triangle(const RecordCheck& at, const Triangle& t) const {
-    for (std::uint32_t corner : t.corner) at.index_in(corner, part_.points.size(), "corner");
+    for (std::uint32_t corner : t.corner) at.indexIn(corner, part_.points.size(), "corner");
     for (std::uint32_t k = 0; k < 3; ++k) {
       if (t.across[k] == kNone) continue;
-      at.index_in(t.across[k] / 4, part_.triangles.size(), "the triangle across an edge");
+      at.indexIn(t.across[k] / 4, part_.triangles.size(), "the triangle across an edge");
       at.need(t.across[k] % 4 < 3, "the number of the edge across is 3, expected 0 to 2");
       const Triangle& other = part_.triangles[t.across[k] / 4];
       const std::uint32_t m = t.across[k] % 4;

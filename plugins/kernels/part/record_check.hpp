@@ -30,20 +30,20 @@ struct RecordCheck {
   }
   /// Checks that a kind is one of 0 to `last`.
   template <class Kind>
-  void kind_in(Kind value, Kind last) const {
+  void kindIn(Kind value, Kind last) const {
     const auto text = [](Kind k) { return std::to_string(static_cast<std::uint32_t>(k)); };
     if (value > last) fail("kind " + text(value) + ", expected 0 to " + text(last));
   }
   /// Checks that an index is below `count`.
-  void index_in(std::uint32_t value, std::size_t count, const char* what) const {
+  void indexIn(std::uint32_t value, std::size_t count, const char* what) const {
     if (value >= count)
       fail(std::string(what) + " " + std::to_string(value) + ", but the index must be below " + std::to_string(count));
   }
-  void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
-    if (value != kNone) index_in(value, count, what);
+  void indexOrNone(std::uint32_t value, std::size_t count, const char* what) const {
+    if (value != kNone) indexIn(value, count, what);
   }
   /// Checks a range of records inside an array.
-  void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
+  void rangeIn(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
     if (first > count || length > count - first)
       fail(std::string(what) + ": " + std::to_string(length) + " from index " + std::to_string(first) +
            " on, but the part has only " + std::to_string(count));
@@ -64,7 +64,7 @@ struct RecordCheck {
     if (!(value >= 0 && value <= kFarthestPart))
       fail("tolerance is " + numberText(value) + " m, expected 0 to " + numberText(kFarthestPart));
   }
-  void flags_in(std::uint32_t flags, std::uint32_t known) const {
+  void flagsIn(std::uint32_t flags, std::uint32_t known) const {
     if ((flags & ~known) != 0)
       fail("flags " + std::to_string(flags) + " have unknown bits, expected only bits of " + std::to_string(known));
   }

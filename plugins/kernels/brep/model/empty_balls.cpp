@@ -95,7 +95,8 @@ class BallFinder {
         stack[static_cast<std::size_t>(depth++)] = node.child[static_cast<std::size_t>(std::countr_zero(left))];
       if ((near & bitsOf(rows)) == 0) continue;
       const std::uint32_t met = near & bitsOf(rows & rowsWithinReach(node, probe));
-      if ((rows_met += std::popcount(met)) > kMostRows) return false;
+      rows_met += std::popcount(met);
+      if (rows_met > kMostRows) return false;
       for (std::uint32_t left = met; left != 0; left &= left - 1)
         meetRow(BoxTree::rowOf(node.child[static_cast<std::size_t>(std::countr_zero(left))]));
     }
