@@ -54,9 +54,8 @@ std::uint32_t aroundCorner(const Part& part, std::uint32_t triangle, std::uint32
   return 0;
 }
 
-/// [main] Finds the empty balls of a mesh, Part::balls. It takes some microseconds for each triangle, on all
-/// processors.
-/// @param tree over the triangles of the mesh
+/// [main] Finds the empty balls of a mesh, Part::balls. It takes some microseconds for each triangle. @param tree over
+/// the triangles of the mesh
 void findEmptyBalls(Part& part, const BodyTree& tree);
 
 /// [main] True if the part has the balls of a mesh: some of them are found again, and are the same.
