@@ -8,8 +8,10 @@
 #include <span>
 
 #include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/part/file.hpp"
 #include "kernels/part/sections.hpp"
+#include "unit/plugins/kernels/brep/sample_meshes.hpp"
 #include "unit/plugins/kernels/brep/sample_solids.hpp"
 
 namespace {
@@ -38,6 +40,13 @@ Part colouredTriangle() {
   return part;
 }
 
+/// A closed mesh with its empty balls.
+Part bumpyBall() {
+  Part part = brep::samples::bumpyBall(200);
+  brep::findEmptyBalls(part);
+  return part;
+}
+
 const std::vector<Part>& samples() {
   static const std::vector<Part> parts{brep::samples::cappedCylinder(10, 20),
                                        brep::samples::bracket(),
@@ -45,14 +54,15 @@ const std::vector<Part>& samples() {
                                        brep::samples::cone(10, 20),
                                        brep::samples::torus(20, 6),
                                        brep::samples::plate(3, 2, 1.5, 5, 3),
-                                       colouredTriangle()};
+                                       colouredTriangle(),
+                                       bumpyBall()};
   return parts;
 }
 
 /// Returns a sample part with spoilt words. Each change takes six bytes of the input: section, place and four bytes to
 /// write there.
 Part spoilt(std::span<const std::uint8_t> input) {
-  constexpr int kSections = 14;
+  constexpr int kSections = 15;
   Part part = samples()[input[0] % samples().size()];
   for (std::size_t at = 1; at + 6 <= input.size(); at += 6) {
     std::uint32_t value = 0;
