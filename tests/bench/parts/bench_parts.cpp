@@ -19,6 +19,7 @@
 
 #include "edge_steps.hpp"
 #include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/model/empty_balls.hpp"
 #include "kernels/part/file.hpp"
 #include "occt.hpp"
 #include "peers.hpp"
@@ -313,6 +314,13 @@ void measure(Part part, const char* name, const char* source = nullptr) {
 
 namespace {
 
+/// Returns a bumpy ball with what an import adds.
+hapticd::brep::Part importedBall(int triangles) {
+  hapticd::brep::Part part = hapticd::brep::samples::bumpyBall(triangles);
+  hapticd::brep::findEmptyBalls(part);
+  return part;
+}
+
 constexpr const char* kUsage =
     "usage: bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of triangles\n"
     "       bench_parts --balls           the balls alone\n"
@@ -323,8 +331,8 @@ constexpr const char* kUsage =
 void measureAll(int count, char** files) {
   using namespace hapticd;
   if (count == 2 && std::string(files[1]) == "--balls") {
-    bench::measure(brep::samples::bumpyBall(100000), "bumpy ball");
-    bench::measure(brep::samples::bumpyBall(1000000), "bumpy ball");
+    bench::measure(importedBall(100000), "bumpy ball");
+    bench::measure(importedBall(1000000), "bumpy ball");
     return;
   }
   if (count < 2) {
@@ -332,8 +340,8 @@ void measureAll(int count, char** files) {
     bench::measure(brep::samples::torus(20, 6), "torus");
     bench::measure(brep::samples::plate(58, 57, 1, 3, 2), "plate with 3306 holes");
     bench::measure(brep::samples::plate(100, 100, 1, 3, 2), "plate with 10,000 holes");
-    bench::measure(brep::samples::bumpyBall(100000), "bumpy ball");
-    bench::measure(brep::samples::bumpyBall(1000000), "bumpy ball");
+    bench::measure(importedBall(100000), "bumpy ball");
+    bench::measure(importedBall(1000000), "bumpy ball");
   }
   if (count > 2 && std::string(files[1]) == "--edges") {
     for (int i = 2; i < count; ++i) bench::measureEdgeSteps(brep::Model(bench::readFile(files[i])));

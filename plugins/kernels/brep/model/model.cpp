@@ -277,13 +277,19 @@ class ModelBuilder {
     });
   }
 
-  /// Keeps the empty balls of the part, or finds them.
+  /// Keeps the empty balls of the part, or finds them if they are few: a loader has no time for more.
   void touchWithBalls() {
+    constexpr std::size_t kMostFound = 100'000;
     const BodyTree& body = model_.bodies_[model_.placements_[0].body];
-    if (!options_.empty_balls || model_.placements_.size() > 1 || body.discs.empty())
-      part_.balls = std::vector<EmptyBalls>();
-    else if (!hasEmptyBalls(part_, body))
+    const bool wanted = options_.empty_balls && model_.placements_.size() == 1 && !body.discs.empty();
+    if (wanted && hasEmptyBalls(part_, body)) return;
+    part_.balls = std::vector<EmptyBalls>();
+    if (wanted && body.elements.size() <= kMostFound)
       findEmptyBalls(part_, body);
+    else if (wanted)
+      model_.warnings_.emplace_back(
+          "its ticks take longer than they need, because its file does not say how far each triangle is alone; import "
+          "the mesh again");
   }
 
   void placeBodies() {

@@ -25,8 +25,8 @@ struct ModelOptions {
   std::string instance;
   /// Names or paths of instances or assemblies that are left out.
   std::vector<std::string> without;
-  /// Find the empty balls of a mesh if the part does not have them, so that a probe can be followed over it quickly. It
-  /// takes some microseconds a triangle.
+  /// Keep the empty balls of a mesh, so that a probe can be followed over it quickly. They are found if the part does
+  /// not have them and the mesh is not large, because that takes some microseconds a triangle.
   bool empty_balls = true;
 };
 

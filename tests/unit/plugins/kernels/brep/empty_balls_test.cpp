@@ -193,6 +193,20 @@ TEST(EmptyBalls, AreKeptInAFile) {
   EXPECT_TRUE(areSame(ballsOf(read), truth));
 }
 
+/// To find those of a large mesh would take who loads it seconds: it is felt without, and says so.
+TEST(EmptyBalls, OfALargeMeshAreFoundByItsImport) {
+  Part part = samples::sheet(230, 0.001);
+  ASSERT_GT(part.triangles.size(), 100'000u);
+  const Model without{Part(part)};
+  EXPECT_TRUE(without.emptyBalls().empty());
+  ASSERT_EQ(without.warnings().size(), 1u);
+  EXPECT_NE(without.warnings()[0].find("import the mesh again"), std::string::npos);
+  findEmptyBalls(part);
+  const Model with_balls{Part(part)};
+  EXPECT_EQ(with_balls.emptyBalls().size(), part.triangles.size());
+  EXPECT_TRUE(with_balls.warnings().empty());
+}
+
 /// An assembly has none: another body may be nearer. Its file may have them, for a model of one of its instances.
 TEST(EmptyBalls, AreOfOneInstance) {
   Part part = samples::bumpyBall(1000);
