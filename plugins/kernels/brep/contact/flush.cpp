@@ -11,7 +11,9 @@ using contact::Followed;
 using contact::Foot;
 using Eigen::Vector3d;
 
+namespace {
 constexpr double kLow = 1e-5;  ///< [m] no hand feels a lower step
+}  // namespace
 
 /// Finds the bodies whose boxes the probe has pressed through at a joint, since bodies may lie on top of each other.
 /// Returns how many there are.
@@ -74,7 +76,8 @@ bool Tracer::goOnTo(std::uint32_t place, double side, const Joint& joint, const 
 bool Tracer::goOnFlush(double side, const Vector3d& p, Foot& foot) noexcept {
   // A step up is none if it is lower than a share of the way of the tick, or than what no hand feels, since parts of a
   // file may be so far off. A hand that presses deep feels it as a small step of the force.
-  constexpr double kStep = 0.25, kOfDepth = 0.25, kHighest = 1e-4;  // [m]
+  constexpr double kStep = 0.25, kOfDepth = 0.25;  // shares of the way of the tick and of the depth
+  constexpr double kHighest = 1e-4;                // [m] of a step that depends on the depth
   const Held before = held_;
   if (!model().placements()[before.place].solid || !(last_normal_.squaredNorm() > 0)) return false;
   const double depth = last_normal_.dot(last_foot_ - p);

@@ -2,6 +2,7 @@
 /// Evaluation of the surfaces and curves of a part, for all kinds.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,12 @@ inline Eigen::Vector3d vec(const Vector& v) {
 }
 inline Eigen::Vector2d vec(const Vector2& v) {
   return {v[0], v[1]};
+}
+
+/// [any] Returns the corners of a triangle of a mesh.
+inline std::array<Eigen::Vector3d, 3> cornersOf(const Part& part, std::uint32_t triangle) noexcept {
+  const auto& corner = part.triangles[triangle].corner;
+  return {vec(part.points[corner[0]]), vec(part.points[corner[1]]), vec(part.points[corner[2]])};
 }
 
 /// A point of a curve in the parameter plane, and its derivative.

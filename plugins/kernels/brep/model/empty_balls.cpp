@@ -30,11 +30,6 @@ constexpr double kLargest = 6;       ///< larger balls than this many radii of a
 constexpr double kRounding = 1e-14;  ///< of a coordinate: error of a gap or a height
 constexpr double kShare = 1 - 1e-6;  ///< of a result, for rounding
 
-Corners cornersOf(const Part& part, std::uint32_t triangle) {
-  const auto& corner = part.triangles[triangle].corner;
-  return {vec(part.points[corner[0]]), vec(part.points[corner[1]]), vec(part.points[corner[2]])};
-}
-
 /// Returns a bit for each corner of a: it is set if b has the same corner.
 std::uint32_t commonCorners(const Triangle& a, const Triangle& b) {
   std::uint32_t common = 0;

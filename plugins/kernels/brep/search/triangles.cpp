@@ -70,11 +70,6 @@ class Bounds {
   int count_;
 };
 
-std::array<Vector3d, 3> cornersOf(const Part& part, Element triangle) noexcept {
-  const auto& corner = part.triangles[triangle.index()].corner;
-  return {vec(part.points[corner[0]]), vec(part.points[corner[1]]), vec(part.points[corner[2]])};
-}
-
 /// The triangles that a tick has examined, with their rows and feet.
 class Examined {
  public:
@@ -88,7 +83,7 @@ class Examined {
     for (int i = 0; i < count_; ++i) {
       const auto& [row, triangle, foot] = triangles_[static_cast<std::size_t>(i)];
       planes.dropRow(row);
-      planes.learn(planes.add(triangle), p, foot, cornersOf(part, triangle));
+      planes.learn(planes.add(triangle), p, foot, cornersOf(part, triangle.index()));
     }
   }
 
@@ -164,7 +159,7 @@ void Search::examineRows(NearTriangles& near, std::uint32_t place, const Vector3
 void Search::examineBehind(int plane, std::uint32_t place, Element triangle, const Vector3d& p, Run& run) noexcept {
   const Vector3d foot = examineForFoot(place, triangle, p, run);
   if (plane == NearPlanes::kNowhere) return;
-  near_planes_.learn(plane, p, foot, cornersOf(model_.part(), triangle));
+  near_planes_.learn(plane, p, foot, cornersOf(model_.part(), triangle.index()));
   if (run.best.hit.element == triangle) last_plane_ = plane;
 }
 
@@ -174,7 +169,9 @@ void Search::examinePlanes(std::uint32_t place, const Vector3d& p, Run& run) noe
   NearPlanes& planes = near_planes_;
   const Element first = run.first_place == place ? run.first : Element();
   const Vector3d first_foot = run.best.hit.point;
-  const auto learnFirst = [&](int plane) { planes.learn(plane, p, first_foot, cornersOf(model_.part(), first)); };
+  const auto learnFirst = [&](int plane) {
+    planes.learn(plane, p, first_foot, cornersOf(model_.part(), first.index()));
+  };
   const PlaneProbe probe = planes.probe(p);
   Bounds<NearPlanes::kMostPlanes> bounds(planes.fours(), [&](int k) { return planes.distances(k, probe); });
   run.best.nodes += planes.fours();
