@@ -1,73 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Faults at the level of bytes, in virtual time: each ends the force within 20 ms, has a name, and is over when the
-/// hardware is well again.
+/// How a session goes: calibration, lost counts, counters and clocks, arms that come back.
 #include "wire_arm/session.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
-#include "emulators/board.hpp"
-#include "emulators/wire_file.hpp"
+#include "session_rig.hpp"
 
 namespace hapticd::wire_arm {
 namespace {
-
-constexpr Nanoseconds kMs = 1'000'000;
-
-/// A board at 1 kHz and a host that pushes all the time; time runs in steps of 250 us.
-class Rig {
- public:
-  explicit Rig(Calibration calibration = Calibration::kDevice)
-      : wire_(codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/premium15.yaml"), 3)),
-        session_(wire_, settings(calibration)) {
-    session_.attach(now_, {}, calibration == Calibration::kPose);
-  }
-
-  using Spoil = std::function<bool(std::vector<uint8_t>&)>;  ///< false: nothing is sent
-
-  /// Runs for some time; `spoil` may change what the board sends.
-  void run(double seconds, const Spoil& spoil = {}) {
-    const Nanoseconds until = now_ + static_cast<Nanoseconds>(seconds * 1e9);
-    while (now_ < until) {
-      now_ += kMs / 4;
-      if (++quarter_ % 4 == 0) {
-        ++board.sequence;
-        std::vector<uint8_t> bytes = board.bytes();
-        if (attached && (!spoil || spoil(bytes))) session_.receive(now_, bytes);
-        if (host_writes)
-          command_.time = now_, ++command_.sequence, command_.on = true, command_.torque = {0.1, 0.1, 0.1};
-      }
-      session_.watch(now_);
-      std::array<uint8_t, 64> out{};
-      const emulator::BoardCommand command({out.data(), session_.command(now_, command_, out)});
-      ASSERT_TRUE(command.valid);
-      current_ = command.enabled ? command.current[0] : 0;
-      if (command.pushes()) pushed_at_ = now_;
-    }
-  }
-
-  /// Time from `since` to the last command that pushed [s].
-  double pushedFor(Nanoseconds since) const {
-    return pushed_at_ > since ? static_cast<double>(pushed_at_ - since) * 1e-9 : 0;
-  }
-  bool pushes() const { return pushed_at_ == now_; }
-
-  static SessionSettings settings(Calibration calibration) {
-    SessionSettings s;
-    s.calibration = calibration;
-    return s;
-  }
-
-  emulator::BoardState board;
-  bool attached = true, host_writes = true;
-  codec::Wire wire_;
-  Session session_;
-  ArmCommand command_;
-  Nanoseconds now_ = 1000 * kMs, pushed_at_ = 0;
-  int quarter_ = 0, current_ = 0;
-};
 
 TEST(Session, AHealthyArmIsPushedAfterARamp) {
   Rig rig;
@@ -79,131 +21,6 @@ TEST(Session, AHealthyArmIsPushedAfterARamp) {
   EXPECT_GT(early, 0);
   EXPECT_LT(early, rig.current_);
   EXPECT_NEAR(rig.current_, 0.1 / (0.0234 * 13.3 / 1000), 1);  // mA
-}
-
-struct Fault {
-  const char* name;
-  Trouble trouble;
-  Rig::Spoil spoil;
-};
-
-class Faults : public ::testing::TestWithParam<Fault> {};
-
-TEST_P(Faults, EndTheForceWithinTwentyMillisecondsAndPass) {
-  Rig rig;
-  rig.run(0.5);
-  ASSERT_TRUE(rig.pushes());
-  const Nanoseconds since = rig.now_;
-  rig.run(0.3, GetParam().spoil);
-  EXPECT_LE(rig.pushedFor(since), 0.020);
-  EXPECT_EQ(rig.session_.trouble(), GetParam().trouble) << describe(rig.session_.trouble());
-  rig.run(0.1);
-  EXPECT_FALSE(rig.pushes()) << "well for too short a time";
-  rig.run(0.2);
-  EXPECT_EQ(rig.session_.trouble(), Trouble::kNone);
-  EXPECT_TRUE(rig.pushes());
-  EXPECT_LT(rig.current_, 300) << "comes back in a ramp";
-}
-
-TEST_P(Faults, HaveTheirNameFromTheFirst) {
-  Rig rig;
-  rig.run(0.5);
-  for (int ms = 0; ms < 100 && rig.session_.trouble() == Trouble::kNone; ++ms) rig.run(0.001, GetParam().spoil);
-  EXPECT_EQ(rig.session_.trouble(), GetParam().trouble) << describe(rig.session_.trouble());
-}
-
-int g_count = 0;
-INSTANTIATE_TEST_SUITE_P(
-    Each, Faults,
-    ::testing::Values(Fault{"silence", Trouble::kStale, [](auto&) { return false; }},
-                      Fault{"short", Trouble::kShort, [](auto& b) { return b.resize(20), true; }},
-                      Fault{"long", Trouble::kShort, [](auto& b) { return b.resize(40), true; }},
-                      Fault{"empty", Trouble::kShort, [](auto& b) { return b.clear(), true; }},
-                      Fault{"corrupt", Trouble::kCorrupt, [](auto& b) { return b[12] ^= 0x40, true; }},
-                      Fault{"firmware", Trouble::kFirmware, [](auto& b) { return b[0] = 2, true; }},
-                      Fault{"half_rate", Trouble::kSlow, [](auto&) { return ++g_count % 2 == 0; }},
-                      Fault{"repeated", Trouble::kOld,
-                            [](auto& b) {
-                              emulator::BoardState same;
-                              same.sequence = 9;
-                              return b = same.bytes(), true;
-                            }},
-                      Fault{"alternating", Trouble::kOld,  // a board that is stuck between its two buffers
-                            [](auto& b) {
-                              emulator::BoardState buffer;
-                              buffer.sequence = static_cast<uint16_t>(40000 + g_count++ % 2);
-                              return b = buffer.bytes(), true;
-                            }},
-                      Fault{"counts_down", Trouble::kOld,
-                            [](auto& b) {
-                              emulator::BoardState down;
-                              down.sequence = static_cast<uint16_t>(60000 - g_count++);
-                              return b = down.bytes(), true;
-                            }},
-                      Fault{"hardware", Trouble::kHardware,
-                            [](auto& b) {
-                              emulator::BoardState hot;
-                              hot.state = 1 | 8;
-                              hot.sequence = static_cast<uint16_t>(b[2] | b[3] << 8);
-                              return b = hot.bytes(), true;
-                            }}),
-    [](const auto& param) { return param.param.name; });
-
-TEST(Session, HalfOfItsReportsAreCorruptAndThatIsWhyItIsSlow) {
-  Rig rig;
-  rig.run(0.5);
-  int n = 0;
-  rig.run(0.6, [&](auto& bytes) { return ++n % 2 == 0 ? (bytes[9] ^= 1, true) : true; });
-  EXPECT_EQ(rig.session_.trouble(), Trouble::kCorrupt) << describe(rig.session_.trouble());
-}
-
-/// Many boards send 125 reports a second until somebody corrects the interval of their endpoint.
-TEST(Session, AnArmOfALowerRateThanItsFileSaysIsSlowAndNotSilent) {
-  for (const int every : {2, 4, 6, 8, 10, 14}) {
-    Rig rig;
-    int n = 0;
-    const auto some = [&](auto&) { return ++n % every == 0; };
-    rig.run(0.5, some);
-    for (int ms = 0; ms < 300; ++ms) {
-      rig.run(0.001, some);
-      ASSERT_EQ(rig.session_.trouble(), Trouble::kSlow)
-          << "every " << every << " ms: " << describe(rig.session_.trouble());
-    }
-    rig.run(0.1, [](auto&) { return false; });
-    EXPECT_EQ(rig.session_.trouble(), Trouble::kStale) << "but then it is silent";
-  }
-}
-
-TEST(Session, TwoFaultsAtOnceHaveOneName) {
-  Rig rig;
-  rig.run(0.5);
-  int n = 0, changes = 0;
-  const auto both = [&](auto& bytes) { return ++n % 2 == 0 ? bytes.resize(20), true : (bytes[9] ^= 1, true); };
-  Trouble last = Trouble::kNone;
-  for (int ms = 0; ms < 300; ++ms) {
-    rig.run(0.001, both);
-    changes += rig.session_.trouble() != last;
-    last = rig.session_.trouble();
-  }
-  EXPECT_EQ(changes, 1);
-}
-
-TEST(Session, ABoardThatSendsItsLastReportTwiceIsSilentThen) {
-  Rig rig;
-  rig.run(0.5);
-  rig.run(0.001, [last = rig.board.bytes()](auto& bytes) { return bytes = last, true; });
-  rig.run(0.3, [](auto&) { return false; });
-  EXPECT_EQ(rig.session_.trouble(), Trouble::kStale) << describe(rig.session_.trouble());
-}
-
-TEST(Session, SomeBadReportsAreNoFault) {
-  Rig rig;
-  rig.run(0.5);
-  int n = 0;
-  rig.run(0.3, [&](auto& bytes) { return ++n % 20 == 0 ? (bytes[9] ^= 1, true) : true; });
-  EXPECT_EQ(rig.session_.trouble(), Trouble::kNone);
-  EXPECT_TRUE(rig.pushes());
-  EXPECT_GT(rig.session_.badReports(), 10u);
 }
 
 TEST(Session, AnUnpluggedArmIsPushedAtOnceNoMoreAndComesBackInARamp) {
